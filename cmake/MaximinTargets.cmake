@@ -1,0 +1,37 @@
+# One include form everywhere: <maximin/FLOOR/NAME.hpp>. In the build tree it is a folder of links to the floors.
+set(MAXIMIN_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${MAXIMIN_INCLUDE_DIR}/maximin)
+
+# What every target of the project is compiled with. Results are certified, so no contraction and never -ffast-math.
+add_library(maximin_options INTERFACE)
+target_compile_features(maximin_options INTERFACE cxx_std_20)
+target_compile_options(maximin_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor
+  $<$<BOOL:${MAXIMIN_WARNINGS_AS_ERRORS}>:-Werror>)
+if(MAXIMIN_SANITIZE)
+  target_compile_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE})
+endif()
+
+# maximin_floor(NAME [SOURCES file...] [LINK target...]): the library maximin::NAME of the folder NAME.
+# Without sources it is header-only.
+function(maximin_floor name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
+  set(target maximin_${name})
+  if(arg_SOURCES)
+    add_library(${target} STATIC ${arg_SOURCES})
+    target_link_libraries(${target} PUBLIC ${arg_LINK} PRIVATE $<BUILD_INTERFACE:maximin_options>)
+    set(scope PUBLIC)
+  else()
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE ${arg_LINK})
+    set(scope INTERFACE)
+  endif()
+  add_library(maximin::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_compile_options(${target} ${scope} $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off>)
+  target_include_directories(${target} ${scope}
+    $<BUILD_INTERFACE:${MAXIMIN_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${MAXIMIN_INCLUDE_DIR}/maximin/${name} SYMBOLIC)
+  set_property(GLOBAL APPEND PROPERTY MAXIMIN_FLOORS ${name})
+endfunction()

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include <maximin/theory/finite_mdp.hpp>
+#include <maximin/theory/metric.hpp>
+#include <maximin/theory/types.hpp>
+
+namespace maximin {
+
+/// The smallest constant c with |f(s1) - f(s2)| <= c |x_s1 - x_s2| for all pairs, and the pair that attains it.
+template <class Scalar>
+struct LipschitzConstant {
+  Scalar value{0};        ///< the constant; meaningless when `infinite`
+  bool infinite = false;  ///< distinct states at distance 0 disagree, so that no constant will do
+  State s1 = 0, s2 = 0;   ///< the pair that attains it (equal: every difference is zero)
+  Action action = 0;      ///< the action that attains it
+  State target = -1;      ///< for l_p, the successor s' that attains it
+
+  /// Takes the ratio difference / distance into account.
+  void observe(const Scalar& difference, const Scalar& distance, State first, State second, Action a, State to = -1) {
+    if (infinite || !(difference > Scalar(0))) return;
+    if (!(distance > Scalar(0))) {
+      infinite = true;
+    } else if (!(difference > value * distance)) {
+      return;
+    } else {
+      value = difference / distance;
+    }
+    s1 = first;
+    s2 = second;
+    action = a;
+    target = to;
+  }
+};
+
+/// Every constant of a model that a bound uses, recomputed from the model and never trusted from elsewhere.
+template <class Scalar>
+struct ModelConstants {
+  LipschitzConstant<Scalar> l_r;   ///< of R(.,a), largest over a (paper, Assumption 1)
+  LipschitzConstant<Scalar> l_p;   ///< of P(s'|.,a), largest over a and s' (paper, Assumption 1)
+  LipschitzConstant<Scalar> k_tv;  ///< of P(.|.,a) in total variation (half the l1 distance), largest over a
+  Scalar r_min{0};                 ///< min R
+  Scalar r_max_signed{0};          ///< max R: all that Assumption 2 asks for as printed
+  Scalar r_max{0};                 ///< max |R|: what the proof needs
+  Scalar span{0};                  ///< max R - min R
+
+  bool finite() const { return !l_r.infinite && !l_p.infinite && !k_tv.infinite; }
+};
+
+namespace internal {
+
+/// Largest |P(s'|s1,a) - P(s'|s2,a)| with its s', and half the sum of all of them.
+template <class Scalar>
+struct RowDifference {
+  Scalar largest{0};
+  State at = -1;
+  Scalar total_variation{0};
+};
+
+template <class Scalar>
+RowDifference<Scalar> row_difference(typename FiniteMdp<Scalar>::Row x, typename FiniteMdp<Scalar>::Row y) {
+  RowDifference<Scalar> result;
+  Scalar sum(0);
+  const auto take = [&](State target, Scalar difference) {
+    if (difference < Scalar(0)) difference = -difference;
+    sum += difference;
+    if (difference > result.largest) {
+      result.largest = difference;
+      result.at = target;
+    }
+  };
+  auto i = x.begin();
+  auto j = y.begin();
+  while (i != x.end() || j != y.end()) {
+    if (j == y.end() || (i != x.end() && i->target < j->target)) {
+      take(i->target, i->probability);
+      ++i;
+    } else if (i == x.end() || j->target < i->target) {
+      take(j->target, j->probability);
+      ++j;
+    } else {
+      take(i->target, Scalar(i->probability - j->probability));
+      ++i;
+      ++j;
+    }
+  }
+  result.total_variation = sum / Scalar(2);
+  return result;
+}
+
+}  // namespace internal
+
+/// Lipschitz constant of q(.,a), largest over a. O(|S|^2 |A|).
+template <class Scalar>
+LipschitzConstant<Scalar> lipschitz_constant(const QTable<Scalar>& q, const Metric<Scalar>& metric) {
+  LipschitzConstant<Scalar> constant;
+  for (State s = 0; s < q.rows(); ++s) {
+    for (State t = s + 1; t < q.rows(); ++t) {
+      const Scalar distance = metric.distance(s, t);
+      for (Action a = 0; a < q.cols(); ++a) {
+        Scalar difference = q(s, a) - q(t, a);
+        if (difference < Scalar(0)) difference = -difference;
+        constant.observe(difference, distance, s, t, a);
+      }
+    }
+  }
+  return constant;
+}
+
+/// All constants of the model under the metric. O(|S|^2 |A| row length).
+template <class Scalar>
+ModelConstants<Scalar> model_constants(const FiniteMdp<Scalar>& mdp, const Metric<Scalar>& metric) {
+  ModelConstants<Scalar> c;
+  c.l_r = lipschitz_constant(mdp.rewards(), metric);
+  for (State s = 0; s < mdp.states(); ++s) {
+    for (State t = s + 1; t < mdp.states(); ++t) {
+      const Scalar distance = metric.distance(s, t);
+      for (Action a = 0; a < mdp.actions(); ++a) {
+        const auto d = internal::row_difference<Scalar>(mdp.successors(s, a), mdp.successors(t, a));
+        c.l_p.observe(d.largest, distance, s, t, a, d.at);
+        c.k_tv.observe(d.total_variation, distance, s, t, a);
+      }
+    }
+  }
+  c.r_min = mdp.rewards().minCoeff();
+  c.r_max_signed = mdp.rewards().maxCoeff();
+  c.r_max = std::max(c.r_max_signed, Scalar(-c.r_min));
+  c.span = c.r_max_signed - c.r_min;
+  return c;
+}
+
+}  // namespace maximin
