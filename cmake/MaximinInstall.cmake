@@ -1,7 +1,38 @@
-# Installs every floor and exports it for find_package(Maximin).
+# Installs every floor and exports it for find_package(Maximin [COMPONENTS floor...]).
+# A floor is a component with an export of its own, so that who asks for theory alone needs Eigen alone.
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Maximin)
+
+# MAXIMIN_COMPONENTS: one block for each floor, from the ground up, of what it stands on.
 get_property(floors GLOBAL PROPERTY MAXIMIN_FLOORS)
+set(MAXIMIN_COMPONENTS "")
 foreach(floor IN LISTS floors)
-  install(TARGETS maximin_${floor} EXPORT MaximinTargets)
+  install(TARGETS maximin_${floor} EXPORT Maximin_${floor})
+  install(EXPORT Maximin_${floor} NAMESPACE maximin:: FILE Maximin_${floor}.cmake DESTINATION ${package_dir})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${floor}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/maximin/${floor}
     FILES_MATCHING PATTERN "*.hpp")
+
+  get_property(links GLOBAL PROPERTY MAXIMIN_LINK_${floor})
+  set(lower_floors "")
+  set(packages "")
+  foreach(link IN LISTS links)
+    if(link MATCHES "^maximin::(.+)$")
+      list(APPEND lower_floors ${CMAKE_MATCH_1})
+    elseif(link MATCHES "^([^:]+)::")
+      set(package ${CMAKE_MATCH_1})
+      get_property(version GLOBAL PROPERTY MAXIMIN_PACKAGE_${package})
+      list(APPEND packages "${package} ${version}")
+    endif()
+  endforeach()
+  string(APPEND MAXIMIN_COMPONENTS "list(APPEND _maximin_floors ${floor})\n"
+    "set(_maximin_floors_under_${floor} \"${lower_floors}\")\n"
+    "set(_maximin_packages_of_${floor} \"${packages}\")\n")
 endforeach()
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/MaximinConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/MaximinConfig.cmake INSTALL_DESTINATION ${package_dir})
+# Before 1.0 a minor version may change any interface.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/MaximinConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/MaximinConfig.cmake ${PROJECT_BINARY_DIR}/MaximinConfigVersion.cmake
+  DESTINATION ${package_dir})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

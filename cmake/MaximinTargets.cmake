@@ -1,3 +1,12 @@
+# The compiler cache is used where there is one; whoever builds Maximin as a part of something else decides for himself.
+if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  find_program(MAXIMIN_CCACHE ccache)
+  mark_as_advanced(MAXIMIN_CCACHE)
+  if(MAXIMIN_CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${MAXIMIN_CCACHE})
+  endif()
+endif()
+
 # One include form everywhere: <maximin/FLOOR/NAME.hpp>. In the build tree it is a folder of links to the floors.
 set(MAXIMIN_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${MAXIMIN_INCLUDE_DIR}/maximin)
@@ -11,9 +20,23 @@ if(MAXIMIN_SANITIZE)
   target_compile_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE})
 endif()
+if(MAXIMIN_BUILD_FUZZERS)
+  # The libraries under test report their coverage to the fuzzer that links them.
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "MAXIMIN_BUILD_FUZZERS needs clang, the compiler is ${CMAKE_CXX_COMPILER_ID}; use --preset fuzz")
+  endif()
+  target_compile_options(maximin_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# maximin_package(NAME VERSION [argument...]): find_package, and the version remembered for who links the installed tree.
+macro(maximin_package name version)
+  find_package(${name} ${version} REQUIRED ${ARGN})
+  set_property(GLOBAL PROPERTY MAXIMIN_PACKAGE_${name} "${version}")
+endmacro()
 
 # maximin_floor(NAME [SOURCES file...] [LINK target...]): the library maximin::NAME of the folder NAME.
-# Without sources it is header-only.
+# Without sources it is header-only. What it links is public; PACKAGE::target in LINK makes PACKAGE a dependency of the
+# installed floor, maximin::FLOOR makes that floor one.
 function(maximin_floor name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
   set(target maximin_${name})
@@ -27,11 +50,12 @@ function(maximin_floor name)
     set(scope INTERFACE)
   endif()
   add_library(maximin::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(${target} ${scope} cxx_std_20)
   target_compile_options(${target} ${scope} $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off>)
   target_include_directories(${target} ${scope}
     $<BUILD_INTERFACE:${MAXIMIN_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${MAXIMIN_INCLUDE_DIR}/maximin/${name} SYMBOLIC)
   set_property(GLOBAL APPEND PROPERTY MAXIMIN_FLOORS ${name})
+  set_property(GLOBAL PROPERTY MAXIMIN_LINK_${name} "${arg_LINK}")
 endfunction()
