@@ -1,0 +1,58 @@
+#include <maximin/tabular/optimal_attack.hpp>
+
+#include <algorithm>
+#include <vector>
+
+#include <maximin/tabular/control.hpp>
+
+namespace maximin {
+namespace {
+
+/// The actions that an attacker can provoke in each true state, ascending, each once.
+template <class Scalar>
+std::vector<std::vector<Action>> provokable(const Perturbation<Scalar>& perturbation, const Policy& policy) {
+  std::vector<std::vector<Action>> choices(policy.size());
+  for (State s = 0; s < perturbation.states(); ++s) {
+    auto& list = choices[static_cast<std::size_t>(s)];
+    for (const State t : perturbation.ball(s)) list.push_back(policy[static_cast<std::size_t>(t)]);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return choices;
+}
+
+/// The first state of B(s) that makes pi take the given action.
+template <class Scalar>
+State disguise(const Perturbation<Scalar>& perturbation, const Policy& policy, State s, Action action) {
+  const auto ball = perturbation.ball(s);
+  return *std::find_if(ball.begin(), ball.end(),
+                       [&](State t) { return policy[static_cast<std::size_t>(t)] == action; });
+}
+
+}  // namespace
+
+template <class Scalar>
+RobustEvaluation<Scalar> evaluate_against_optimal_attack(const FiniteMdp<Scalar>& mdp,
+                                                         const Perturbation<Scalar>& perturbation, const Policy& policy,
+                                                         const SolverOptions& options) {
+  const ControlProblem<Scalar> attacker(mdp, ControlProblem<Scalar>::Player::minimise,
+                                        provokable(perturbation, policy));
+  auto solution = internal::iterate_policies(attacker, options);
+  RobustEvaluation<Scalar> result;
+  result.q = std::move(solution.q);
+  result.v = std::move(solution.v);
+  result.composed = std::move(solution.policy);
+  result.error = solution.error;
+  result.sweeps = solution.sweeps;
+  result.attack.resize(result.composed.size());
+  for (State s = 0; s < mdp.states(); ++s) {
+    const auto i = static_cast<std::size_t>(s);
+    result.attack[i] = disguise(perturbation, policy, s, result.composed[i]);
+  }
+  return result;
+}
+
+template RobustEvaluation<double> evaluate_against_optimal_attack(const FiniteMdp<double>&, const Perturbation<double>&,
+                                                                  const Policy&, const SolverOptions&);
+
+}  // namespace maximin
