@@ -33,12 +33,12 @@ struct Geometry {
 template <class Scalar>
 struct Model {
   FiniteMdp<Scalar> mdp;
-  Geometry<Scalar> geometry;
-  std::string name;                       ///< for people; may be empty
-  std::vector<std::string> state_names;   ///< one per state, or empty
-  std::vector<std::string> action_names;  ///< one per action, or empty
-  std::vector<Scalar> start;              ///< Pr(s_0), or empty: uniform
-  std::vector<std::string> notes;         ///< what the reader assumed or repaired, one line each, for the user to see
+  Geometry<Scalar> geometry = {};
+  std::string name = {};                       ///< for people; may be empty
+  std::vector<std::string> state_names = {};   ///< one per state, or empty
+  std::vector<std::string> action_names = {};  ///< one per action, or empty
+  std::vector<Scalar> start = {};              ///< Pr(s_0), or empty: uniform
+  std::vector<std::string> notes = {};  ///< what the reader assumed or repaired, one line each, for the user to see
 
   /// The name of a state, or its index.
   std::string state_name(State s) const {
