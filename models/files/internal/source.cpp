@@ -1,0 +1,103 @@
+#include <maximin/models/files/internal/source.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace maximin::internal {
+
+void Source::fail(std::size_t at, std::string_view message) const {
+  throw InputError(fmt::format("{}: {}", place(at), message));
+}
+
+std::string TextSource::place(std::size_t at) const {
+  return at == 0 ? file() : fmt::format("{}:{}", file(), at);
+}
+
+void TextSource::require_text(std::string_view text) const {
+  std::size_t line = 1;
+  while (!text.empty()) {
+    const std::size_t length = text.front() == '\0' ? 0 : utf8_length(text);
+    if (length == 0) {
+      fail(line, fmt::format("byte 0x{:02x} is not text, expected UTF-8", static_cast<unsigned char>(text.front())));
+    }
+    if (text.front() == '\n') ++line;
+    text.remove_prefix(length);
+  }
+}
+
+std::size_t utf8_length(std::string_view text) {
+  if (text.empty()) return 0;
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead >= 0xC2 && lead < 0xE0   ? 2
+                             : lead >= 0xE0 && lead < 0xF0 ? 3
+                             : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                           : 0;
+  if (length == 0 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  // Overlong forms, surrogates and code points beyond U+10FFFF.
+  const unsigned second = byte(1);
+  if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F)) return 0;
+  if ((lead == 0xF0 && second < 0x90) || (lead == 0xF4 && second > 0x8F)) return 0;
+  return length;
+}
+
+std::string quoted(std::string_view token) {
+  constexpr std::size_t longest = 40;
+  std::string out = "'";
+  while (!token.empty() && out.size() <= longest) {
+    const std::size_t length = utf8_length(token);
+    const auto byte = static_cast<unsigned char>(token.front());
+    if (length == 0 || byte < 0x20 || byte == 0x7F) {
+      out += fmt::format("\\x{:02x}", byte);
+      token.remove_prefix(1);
+    } else {
+      out += token.substr(0, length);
+      token.remove_prefix(length);
+    }
+  }
+  return out + (token.empty() ? "'" : "...'");
+}
+
+namespace {
+
+/// Insertions, deletions and replacements that turn one word into the other.
+std::size_t edit_distance(std::string_view x, std::string_view y) {
+  std::vector<std::size_t> row(y.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < y.size(); ++j) {
+      const std::size_t replaced = diagonal + (x[i] == y[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string nearest(std::string_view word, std::span<const std::string_view> candidates) {
+  constexpr std::size_t longest = 64;
+  if (word.size() > longest) return {};
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
+  for (const std::string_view candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace maximin::internal

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <maximin/theory/error.hpp>
+
+/// What every reader needs to say where an error is.
+namespace maximin::internal {
+
+/// A file being read. Knows how to turn a position, a number whose meaning is its own, into words.
+class Source {
+ public:
+  explicit Source(std::string_view file) : file_(file) {}
+  virtual ~Source() = default;
+
+  /// "FILE:LINE" or "FILE: $.path"; position 0 is the file as a whole.
+  virtual std::string place(std::size_t at) const = 0;
+
+  /// Throws InputError("PLACE: MESSAGE").
+  [[noreturn]] void fail(std::size_t at, std::string_view message) const;
+
+  const std::string& file() const { return file_; }
+
+ private:
+  std::string file_;
+};
+
+/// A text file: positions are line numbers from 1.
+class TextSource : public Source {
+ public:
+  using Source::Source;
+  std::string place(std::size_t at) const override;
+
+  /// Throws InputError unless the text is UTF-8 without NUL bytes.
+  void require_text(std::string_view text) const;
+};
+
+/// The token in quotes, cut to a readable length, with control characters and stray bytes escaped.
+std::string quoted(std::string_view token);
+
+/// The length of the UTF-8 sequence at the front of `text`, or 0 when there is none.
+std::size_t utf8_length(std::string_view text);
+
+/// The candidate nearest to `word` by edit distance, or an empty string when none is near.
+std::string nearest(std::string_view word, std::span<const std::string_view> candidates);
+
+}  // namespace maximin::internal
