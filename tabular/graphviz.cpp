@@ -1,3 +1,6 @@
+#include <maximin/tabular/graphviz.hpp>
+
+#include <algorithm>
 #include <map>
 #include <ostream>
 #include <utility>
@@ -5,8 +8,6 @@
 #include <fmt/format.h>
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/graphviz.hpp>
-
-#include <maximin/tabular/transition_graph.hpp>
 
 namespace maximin::internal {
 namespace {

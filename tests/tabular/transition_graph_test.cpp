@@ -3,6 +3,7 @@
 #include <limits>
 #include <sstream>
 
+#include <maximin/tabular/graphviz.hpp>
 #include <maximin/tabular/transition_graph.hpp>
 #include <maximin/theory/perturbation.hpp>
 #include <maximin/theory/random.hpp>
