@@ -1,0 +1,45 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include <maximin/models/model.hpp>
+#include <maximin/proofs_check/examination.hpp>
+#include <maximin/proofs_check/trial_record.hpp>
+#include <maximin/theory/random.hpp>
+
+namespace maximin {
+
+/// A random model and the family it was drawn from.
+struct DrawnModel {
+  std::string family;
+  Model<double> model;
+};
+
+/// Draws the model of a trial. Must be a function of the stream alone, and safe to call from several threads.
+using ModelSource = std::function<DrawnModel(Stream&)>;
+
+/// Many models, each examined; trial k is a function of (seed, k) whatever the threads.
+struct Campaign {
+  std::uint64_t seed = 1;
+  long trials = 2000;
+  long first = 0;  ///< trials before it are known already (a resumed run)
+  int threads = 1;
+  ExaminationOptions examination;
+};
+
+/// Takes the records in order of the trials, from one thread at a time. May throw; the campaign then ends.
+using RecordSink = std::function<void(TrialRecord&&)>;
+
+/// Draws and examines trial k by itself. A solver that runs out of its budget makes every claim undetermined.
+TrialRecord run_trial(const Campaign& campaign, const ModelSource& source, long trial);
+
+/// Runs the campaign. `stop` ends it early, with all records before the first missing one handed to the sink.
+/// Returns how many trials the sink has seen in this run.
+long run_campaign(const Campaign& campaign, const ModelSource& source, const RecordSink& sink,
+                  const std::atomic<bool>& stop);
+
+}  // namespace maximin

@@ -1,0 +1,154 @@
+#include <maximin/proofs_check/campaign_summary.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maximin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The value below which a share q of the sorted sample lies (nearest rank).
+double quantile(const std::vector<double>& sorted, double q) {
+  if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size())));
+  return sorted[std::min(sorted.size() - 1, rank == 0 ? 0 : rank - 1)];
+}
+
+/// Probability of at most k successes in n trials of probability p.
+double binomial_at_most(long k, long n, double p) {
+  double total = 0;
+  for (long i = 0; i <= k; ++i) {
+    const double log_choose = std::lgamma(n + 1.0) - std::lgamma(i + 1.0) - std::lgamma(n - i + 1.0);
+    total += std::exp(log_choose + static_cast<double>(i) * std::log(p) + static_cast<double>(n - i) * std::log1p(-p));
+  }
+  return total;
+}
+
+void count(const Check& check, ClaimSummary& into) {
+  into.instances += check.instances;
+  into.holds += check.verdict == Verdict::holds;
+  into.violated += check.verdict == Verdict::violated;
+  into.undetermined += check.verdict == Verdict::undetermined;
+  into.assumption_fails += check.verdict == Verdict::assumption_fails;
+}
+
+/// Tightness and the worst instance of one claim over all records.
+void rank(const std::vector<TrialRecord>& records, ClaimId id, ClaimSummary& into) {
+  std::vector<double> ratios;
+  double worst = -std::numeric_limits<double>::infinity();
+  for (const TrialRecord& record : records) {
+    const Check& check = record.found.check(id);
+    count(check, into);
+    if (check.verdict != Verdict::holds && check.verdict != Verdict::violated) continue;
+    into.informative += record.found.informative(id);
+    const double excess = check.left - check.right;
+    if (!(excess <= worst)) {
+      worst = std::isnan(excess) ? std::numeric_limits<double>::infinity() : excess;
+      into.worst = check;
+      into.worst_trial = record.trial;
+    }
+    const double ratio = check.tightness();
+    if (!std::isfinite(ratio)) continue;
+    if (into.max_trial < 0 || ratio > into.max) {
+      into.max = ratio;
+      into.max_trial = record.trial;
+    }
+    ratios.push_back(ratio);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  into.median = quantile(ratios, 0.5);
+  into.p99 = quantile(ratios, 0.99);
+}
+
+void count(const TrialRecord& record, CampaignSummary& s) {
+  const Examination& e = record.found;
+  ++s.trials;
+  ++s.families[record.family];
+  if (e.any(Verdict::violated)) {
+    if (s.violations++ == 0) s.first_violation = record.trial;
+  }
+  s.undetermined += e.any(Verdict::undetermined);
+  s.assumption_failures += !e.failed_assumption.empty();
+  const auto& all = claims();
+  s.any_informative +=
+      std::any_of(all.begin(), all.end(), [&](const Claim& c) { return c.is_bound && e.informative(c.id); });
+  s.settled += e.fate == Fate::settled;
+  s.cycles += e.fate == Fate::cycles;
+  s.fate_undetermined += e.fate == Fate::undetermined;
+  if (e.fate == Fate::cycles) ++s.periods[e.period];
+  s.balls_of_several += e.largest_ball > 1;
+  s.attack_changes_action += e.attack_changes_action;
+  s.pessimism_changes_action += e.pessimism_changes_action;
+}
+
+Json number(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+Json to_json(const Claim& claim, const ClaimSummary& s) {
+  Json json{{"name", claim.name},     {"reference", claim.reference},   {"statement", claim.statement},
+            {"checked", s.checked()}, {"instances", s.instances},       {"holds", s.holds},
+            {"violated", s.violated}, {"undetermined", s.undetermined}, {"assumption_fails", s.assumption_fails}};
+  if (claim.is_bound) json["informative"] = s.informative;
+  json["tightness"] = {
+      {"median", number(s.median)}, {"p99", number(s.p99)}, {"max", number(s.max)}, {"max_trial", s.max_trial}};
+  json["worst"] = {{"trial", s.worst_trial},
+                   {"n", s.worst.n},
+                   {"left", number(s.worst.left)},
+                   {"right", number(s.worst.right)},
+                   {"slack", number(s.worst.slack)}};
+  return json;
+}
+
+}  // namespace
+
+double CampaignSummary::violation_upper_limit() const {
+  if (trials == 0 || violations >= trials) return 1;
+  if (violations == 0) return 1 - std::pow(0.05, 1.0 / static_cast<double>(trials));
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; ++i) {
+    const double p = (low + high) / 2;
+    (binomial_at_most(violations, trials, p) > 0.05 ? low : high) = p;
+  }
+  return high;
+}
+
+CampaignSummary summarise(const std::vector<TrialRecord>& records) {
+  CampaignSummary summary;
+  for (const TrialRecord& record : records) count(record, summary);
+  for (const Claim& c : claims()) rank(records, c.id, summary.claims[static_cast<std::size_t>(c.id)]);
+  return summary;
+}
+
+Json to_json(const CampaignSummary& s) {
+  Json periods = Json::object();
+  for (const auto& [period, trials] : s.periods) periods[std::to_string(period)] = trials;
+  Json json{
+      {"trials", s.trials},
+      {"violations", s.violations},
+      {"first_violation", s.first_violation},
+      {"violation_upper_limit_95", s.violation_upper_limit()},
+      {"undetermined", s.undetermined},
+      {"assumption_failures", s.assumption_failures},
+      {"any_bound_informative", s.any_informative},
+      {"vacuous", s.vacuous()},
+      {"fates",
+       {{"settled", s.settled}, {"cycles", s.cycles}, {"undetermined", s.fate_undetermined}, {"periods", periods}}},
+      {"regimes",
+       {{"ball_of_more_than_one_state", s.balls_of_several},
+        {"attack_changes_the_action", s.attack_changes_action},
+        {"pessimism_changes_the_action", s.pessimism_changes_action}}},
+      {"families", s.families}};
+  Json& all = json["claims"] = Json::array();
+  for (const Claim& c : claims()) {
+    const ClaimSummary& claim_summary = s.claims[static_cast<std::size_t>(c.id)];
+    if (claim_summary.checked() + claim_summary.undetermined + claim_summary.assumption_fails > 0) {
+      all.push_back(to_json(c, claim_summary));
+    }
+  }
+  return json;
+}
+
+}  // namespace maximin

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <set>
+#include <string>
+
+#include <maximin/proofs_check/claims.hpp>
+#include <maximin/tabular/pessimistic_q_iteration.hpp>
+#include <maximin/theory/finite_mdp.hpp>
+#include <maximin/theory/lipschitz.hpp>
+#include <maximin/theory/perturbation.hpp>
+
+namespace maximin {
+
+/// What a check came to.
+enum class Verdict {
+  holds,
+  violated,
+  undetermined,      ///< a budget ran out before both sides were known
+  assumption_fails,  ///< the model breaks an assumption of the claim
+  not_asked,
+};
+
+/// One claim on one model: `left <= right` was wanted, and counts as seen while left <= right + slack.
+/// The worst instance over n (and over pairs of states, and actions) is kept: the one of largest left - right - slack.
+struct Check {
+  Verdict verdict = Verdict::not_asked;
+  double left = 0;
+  double right = 0;
+  double slack = 0;  ///< certified numerical error of both sides together
+  long n = -1;       ///< the round of the worst instance, or -1 where there is none
+  long instances = 0;
+
+  /// Takes one instance into account. NaN or infinity on either side is a violation.
+  void observe(double l, double r, double s, long round = -1);
+  /// left/right, or NaN where right is not positive.
+  double tightness() const;
+};
+
+struct ExaminationOptions {
+  Reading reading = Reading::corrected;
+  long max_iterations = 20'000;        ///< of pessimistic Q-iteration
+  long max_belief_positions = 20'000;  ///< for claim F; more make it undetermined
+  std::optional<std::set<ClaimId>> only;
+  TieBreak tie = TieBreak::lowest_index;
+
+  bool wants(ClaimId id) const { return !only || only->contains(id); }
+};
+
+/// Everything that was found out about one model.
+struct Examination {
+  State states = 0;
+  Action actions = 0;
+  double discount = 0;
+  double eps = 0;
+  double radius = 0;  ///< what the bounds use as eps: the largest distance inside a ball
+  ModelConstants<double> constants;
+  double lipschitz_of_q_star = 0;  ///< L*
+  double trivial = 0;              ///< span(R)/(1-gamma): what a bound must beat to say anything
+  Fate fate = Fate::undetermined;
+  long period = 0;
+  long iterations = 0;
+  long pairs = 0;                         ///< distinct policy pairs met
+  State largest_ball = 0;                 ///< states in it
+  bool attack_changes_action = false;     ///< in some round, in some state
+  bool pessimism_changes_action = false;  ///< maximin and greedy differ in some round, at some observation
+  double gap = 0;                         ///< limsup of max (Q* - Q^{pi_n, best attack}), when the fate is known
+  long belief_positions = 0;              ///< reachable (state, belief) pairs, for claim F
+  std::string failed_assumption;          ///< empty: all hold
+  std::array<Check, claim_count> checks;
+
+  const Check& check(ClaimId id) const { return checks[static_cast<std::size_t>(id)]; }
+  Check& check(ClaimId id) { return checks[static_cast<std::size_t>(id)]; }
+  bool any(Verdict verdict) const;
+  /// Whether the claim's bound says anything on this model: right side below `trivial`.
+  bool informative(ClaimId id) const;
+};
+
+/// Checks every claim on one model, the finite-n ones at every n, against certified values.
+/// Throws InputError when model and perturbation do not match.
+Examination examine(const FiniteMdp<double>& mdp, const Perturbation<double>& perturbation,
+                    const ExaminationOptions& options = {});
+
+}  // namespace maximin
