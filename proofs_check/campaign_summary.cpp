@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <boost/math/distributions/binomial.hpp>
+
 namespace maximin {
 namespace {
 
@@ -14,16 +16,6 @@ double quantile(const std::vector<double>& sorted, double q) {
   if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size())));
   return sorted[std::min(sorted.size() - 1, rank == 0 ? 0 : rank - 1)];
-}
-
-/// Probability of at most k successes in n trials of probability p.
-double binomial_at_most(long k, long n, double p) {
-  double total = 0;
-  for (long i = 0; i <= k; ++i) {
-    const double log_choose = std::lgamma(n + 1.0) - std::lgamma(i + 1.0) - std::lgamma(n - i + 1.0);
-    total += std::exp(log_choose + static_cast<double>(i) * std::log(p) + static_cast<double>(n - i) * std::log1p(-p));
-  }
-  return total;
 }
 
 void count(const Check& check, ClaimSummary& into) {
@@ -106,13 +98,8 @@ Json to_json(const Claim& claim, const ClaimSummary& s) {
 
 double CampaignSummary::violation_upper_limit() const {
   if (trials == 0 || violations >= trials) return 1;
-  if (violations == 0) return 1 - std::pow(0.05, 1.0 / static_cast<double>(trials));
-  double low = 0, high = 1;
-  for (int i = 0; i < 60; ++i) {
-    const double p = (low + high) / 2;
-    (binomial_at_most(violations, trials, p) > 0.05 ? low : high) = p;
-  }
-  return high;
+  return boost::math::binomial_distribution<>::find_upper_bound_on_p(static_cast<double>(trials),
+                                                                     static_cast<double>(violations), 0.05);
 }
 
 CampaignSummary summarise(const std::vector<TrialRecord>& records) {

@@ -42,8 +42,8 @@ struct CampaignSummary {
   long pessimism_changes_action = 0;
   std::map<std::string, long> families;
 
-  /// 95 percent upper limit on the share of such models that violate a claim: 1 - 0.05^(1/trials) for none seen
-  /// (Clopper and Pearson, one-sided; for some seen, found by bisection).
+  /// 95 percent upper limit on the share of such models that violate a claim (Clopper and Pearson, one-sided; for none
+  /// seen it is 1 - 0.05^(1/trials)).
   double violation_upper_limit() const;
   /// No bound said anything on any model: the campaign verifies nothing.
   bool vacuous() const { return any_informative == 0; }
