@@ -29,7 +29,8 @@ struct Episode {
 };
 
 /// Plays one episode of at most `horizon` steps: the attack perturbs what the agent sees, never where it is (paper,
-/// section 2.2). `observe(record, agent)` is called after every step.
+/// section 2.2). `observe(record, agent)` is called after every step. Agents and attacks that remember something offer
+/// `forget()`, which is called first: the attack looks at the agent before the agent's first act.
 template <Environment Env, Agent AgentT, class AttackT, class Observer>
 requires Attack<AttackT, typename Env::StateType, AgentT> Episode rollout(Env& env, AgentT& agent, AttackT& attack,
                                                                           double discount, long horizon, Stream& rng,
@@ -38,6 +39,8 @@ requires Attack<AttackT, typename Env::StateType, AgentT> Episode rollout(Env& e
   Episode episode;
   double weight = 1;
   StateT state = env.reset(rng);
+  if constexpr (requires { agent.forget(); }) agent.forget();
+  if constexpr (requires { attack.forget(); }) attack.forget();
   for (long t = 0; t < horizon; ++t) {
     const typename AgentT::ObservationType shown = attack.perturb(state, agent, rng);
     const typename AgentT::ActionType action = t == 0 ? agent.begin(shown, rng) : agent.act(shown, rng);
