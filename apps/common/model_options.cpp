@@ -1,0 +1,109 @@
+#include <maximin/apps/common/model_options.hpp>
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/option_checks.hpp>
+#include <maximin/apps/common/program.hpp>
+#include <maximin/models/files/model_file.hpp>
+
+namespace maximin::apps {
+
+namespace {
+
+using Kind = Geometry<double>::Kind;
+
+const char* const model_group = "Model";
+const char* const geometry_group = "Geometry (what the attacker may show)";
+
+CLI::Option* add_words(CLI::App& app, const std::string& name, std::string& value,
+                       const std::vector<std::string>& words, const std::string& description) {
+  return app.add_option(name, value, description)->check(one_of(words))->type_name("WORD");
+}
+
+void declare_reading(CLI::App& app, ModelOptions& options) {
+  app.add_option("--discount", options.discount, "gamma, instead of the model's")
+      ->check(real_number({.low = 0, .high = 1, .below = true}))
+      ->type_name("GAMMA")
+      ->group(model_group);
+  app.add_option("--reward-model", options.reward_model, "which reward model to read, if the file has several")
+      ->type_name("NAME")
+      ->group(model_group);
+  add_words(app, "--intervals", options.intervals, {"refuse", "nominal"},
+            "interval probabilities: refuse them (the default), or\ntake nominal ones from inside")
+      ->group(model_group);
+}
+
+void declare_geometry(CLI::App& app, ModelOptions& options) {
+  add_words(app, "--metric", options.metric, {"points", "hops", "discrete"},
+            "how far apart states are: points (the model's own), hops\nin the transition graph, or discrete (always 1)")
+      ->group(geometry_group);
+  add_words(app, "--norm", options.norm, {"l1", "l2", "linf"}, "norm of the points: l1, l2 or linf")
+      ->group(geometry_group);
+  app.add_option("--eps", options.eps, "radius of the balls, in units of the metric")
+      ->check(real_number({.low = 0}))
+      ->type_name("EPS")
+      ->group(geometry_group);
+}
+
+}  // namespace
+
+void declare(CLI::App& app, ModelOptions& options, ModelArgument argument) {
+  const char* const name = argument == ModelArgument::positional ? "MODEL,--model" : "--model";
+  app.add_option(name, options.file,
+                 "model file: own JSON, gymnasium JSON, Cassandra\n.POMDP or .MDP, PRISM .tra, Storm .drn, .csv, .umb")
+      ->type_name("FILE")
+      ->group(model_group);
+  declare_reading(app, options);
+  declare_geometry(app, options);
+}
+
+Model<double> load(const ModelOptions& options) {
+  if (options.file.empty()) throw InputError("no model given, expected a model file");
+  ReadOptions reading;
+  reading.discount = options.discount;
+  reading.reward_model = options.reward_model;
+  if (options.intervals == "nominal") reading.intervals = IntervalRows::nominal;
+  Model<double> model = load_model<double>(options.file, reading);
+  for (const std::string& line : model.notes) note(line);
+  return model;
+}
+
+GeometryOverrides<double> geometry_overrides(const ModelOptions& options) {
+  GeometryOverrides<double> overrides;
+  if (options.metric == "points") overrides.kind = Kind::points;
+  if (options.metric == "hops") overrides.kind = Kind::hops;
+  if (options.metric == "discrete") overrides.kind = Kind::discrete;
+  if (!options.norm.empty()) overrides.norm = norm_named(options.norm);
+  overrides.eps = options.eps;
+  return overrides;
+}
+
+Perturbation<double> make_perturbation(const Model<double>& model, const ModelOptions& options) {
+  if (model.geometry.kind == Kind::none && options.metric.empty()) {
+    note(
+        fmt::format("the model says nothing of distances: hops in the transition graph are taken{}; --metric and "
+                    "--eps choose otherwise",
+                    options.eps ? "" : ", and eps = 1"));
+  }
+  return maximin::make_perturbation(model, geometry_overrides(options));
+}
+
+Norm norm_named(const std::string& name) {
+  if (name == "l1") return Norm::l1;
+  if (name == "l2") return Norm::l2;
+  if (name == "linf") return Norm::linf;
+  throw InputError("norm: " + name + ", expected l1, l2 or linf");
+}
+
+FiniteMdp<double> with_discount(const FiniteMdp<double>& mdp, double discount) {
+  FiniteMdpBuilder<double> builder(mdp.states(), mdp.actions(), discount);
+  for (State s = 0; s < mdp.states(); ++s) {
+    for (Action a = 0; a < mdp.actions(); ++a) {
+      builder.reward(s, a, mdp.reward(s, a));
+      for (const auto& next : mdp.successors(s, a)) builder.transition(s, a, next.target, next.probability);
+    }
+  }
+  return std::move(builder).build();
+}
+
+}  // namespace maximin::apps

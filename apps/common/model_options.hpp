@@ -1,0 +1,55 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include <maximin/models/make_perturbation.hpp>
+#include <maximin/models/model.hpp>
+#include <maximin/theory/perturbation.hpp>
+
+namespace maximin::apps {
+
+/// The model that a command line asks for: a file or a built-in example, and what the command line says over them.
+struct ModelOptions {
+  std::string file;                ///< empty: none
+  std::string example;             ///< name of a built-in example; empty: none
+  std::optional<double> discount;  ///< instead of the model's
+  std::string reward_model;        ///< which one to read, if the file has several
+  std::string intervals;           ///< "refuse", "nominal" or empty: refuse
+  std::string metric;              ///< "points", "hops", "discrete" or empty: the model's own
+  std::string norm;                ///< "l1", "l2", "linf" or empty: the model's own
+  std::optional<double> eps;       ///< radius of the balls, instead of the model's
+
+  /// Whether a model was asked for at all.
+  bool given() const { return !file.empty() || !example.empty(); }
+};
+
+/// How the file is given.
+enum class ModelArgument {
+  positional,  ///< MODEL, or --model MODEL
+  option,      ///< --model MODEL only
+};
+
+/// Adds --model, --example, --discount, --reward-model, --intervals, --metric, --norm and --eps to the app, with checks
+/// of their values. `options` must outlive the parsing.
+void declare(CLI::App& app, ModelOptions& options, ModelArgument argument = ModelArgument::positional);
+
+/// Reads the model: file or example, with the discount asked for, and prints what the reader assumed as notes on
+/// standard error. Throws InputError when neither or both are given, and as `load_model`.
+Model<double> load(const ModelOptions& options);
+
+/// What the command line says of the geometry.
+GeometryOverrides<double> geometry_overrides(const ModelOptions& options);
+
+/// The balls of the model, with the overrides of the command line. Prints a note on standard error where the metric is
+/// a default that nobody asked for. Throws InputError as `maximin::make_perturbation`.
+Perturbation<double> make_perturbation(const Model<double>& model, const ModelOptions& options);
+
+/// The norm of that name: l1, l2 or linf.
+Norm norm_named(const std::string& name);
+
+/// The model with another discount. Throws InputError outside [0, 1).
+FiniteMdp<double> with_discount(const FiniteMdp<double>& mdp, double discount);
+
+}  // namespace maximin::apps

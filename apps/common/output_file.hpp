@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace maximin::apps {
+
+/// What to do when the file exists.
+enum class Overwrite { refuse, replace };
+
+/// Writes a whole file or none: to a temporary file beside it, which then takes its name. Throws InputError when it
+/// cannot be written, or exists and may not be replaced.
+void write_file(const std::filesystem::path& path, std::string_view content, Overwrite overwrite);
+
+}  // namespace maximin::apps

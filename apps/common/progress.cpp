@@ -1,0 +1,56 @@
+#include <maximin/apps/common/progress.hpp>
+
+#include <cstdio>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/terminal.hpp>
+
+namespace maximin::apps {
+namespace {
+
+constexpr auto refresh = std::chrono::milliseconds(100);
+constexpr int width = 30;
+
+std::string seconds(double s) {
+  if (s < 90) return fmt::format("{:.0f} s", s);
+  return s < 5400 ? fmt::format("{:.0f} min", s / 60) : fmt::format("{:.1f} h", s / 3600);
+}
+
+}  // namespace
+
+Progress::Progress(std::string unit, long total, long done, bool quiet)
+    : unit_(std::move(unit)),
+      total_(total),
+      done_(done),
+      done_before_(done),
+      visible_(!quiet && stderr_is_terminal()),
+      start_(Clock::now()),
+      drawn_(start_) {}
+
+Progress::~Progress() {
+  if (visible_) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::advance(const std::string& note) {
+  ++done_;
+  if (!visible_) return;
+  const auto now = Clock::now();
+  if (now - drawn_ < refresh && done_ < total_) return;
+  draw(note, now);
+  drawn_ = now;
+}
+
+void Progress::draw(const std::string& note, Clock::time_point now) {
+  const double share = static_cast<double>(done_) / static_cast<double>(total_);
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const double rate = elapsed > 0 ? static_cast<double>(done_ - done_before_) / elapsed : 0;
+  const int full = static_cast<int>(share * width);
+  const std::string left = rate > 0 ? seconds(static_cast<double>(total_ - done_) / rate) : "?";
+  fmt::print(stderr, "\r\033[K[{:=<{}}{: <{}}] {}/{} {}  {:.0f}/s  {} left  {}", "", full, "", width - full, done_,
+             total_, unit_, rate, left, note);
+  std::fflush(stderr);
+}
+
+}  // namespace maximin::apps
