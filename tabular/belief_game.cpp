@@ -48,6 +48,16 @@ class PositionGraph {
     return v;
   }
 
+  /// W by true state and belief.
+  std::map<std::pair<State, Belief>, Scalar> by_position(const Values<Scalar>& w) const {
+    std::map<std::pair<State, Belief>, Scalar> result;
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+      const Belief& belief = *beliefs_[static_cast<std::size_t>(positions_[i].belief)];
+      result.emplace(std::pair(positions_[i].truth, belief), w[static_cast<Eigen::Index>(i)]);
+    }
+    return result;
+  }
+
   Eigen::Index size() const { return static_cast<Eigen::Index>(positions_.size()); }
   long beliefs() const { return static_cast<long>(belief_ids_.size()); }
 
@@ -176,13 +186,15 @@ BeliefGameValue<Scalar> solve_belief_game(const FiniteMdp<Scalar>& mdp, const Pe
     if (interval.error <= target) {
       tw.array() += interval.shift;
       const auto [reach, mean_size] = graph.spread();
-      return {graph.start_values(tw),
-              interval.error,
-              static_cast<long>(graph.size()),
-              graph.beliefs(),
-              reach,
-              mean_size,
-              sweeps};
+      BeliefGameValue<Scalar> value{graph.start_values(tw),
+                                    interval.error,
+                                    static_cast<long>(graph.size()),
+                                    graph.beliefs(),
+                                    reach,
+                                    mean_size,
+                                    sweeps};
+      if (options.keep_positions) value.w = graph.by_position(tw);
+      return value;
     }
     w.swap(tw);
   }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <span>
+#include <utility>
 
 #include <maximin/tabular/belief_update.hpp>
 #include <maximin/theory/finite_mdp.hpp>
@@ -27,12 +29,15 @@ struct BeliefGameValue {
   Scalar reach{0};       ///< rho: the largest distance from a true state to a member of the belief held in it
   double mean_size = 0;  ///< states in a belief, averaged over positions
   long sweeps = 0;
+  /// W(s, M) at each reachable (true state, belief), if asked for: what the attacker minimises.
+  std::map<std::pair<State, Belief>, Scalar> w = {};
 };
 
 struct BeliefGameOptions {
   long max_positions = 200'000;  ///< reachable pairs before BudgetExhausted is thrown
   double tolerance = 1e-12;      ///< certified error to reach, as a fraction of max|R|/(1-gamma)
   long max_sweeps = 1'000'000;
+  bool keep_positions = false;  ///< also return W(s, M)
 };
 
 /// The exact worst-case value of a belief policy, against any history-dependent attack: both the truth and the belief

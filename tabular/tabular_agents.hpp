@@ -92,9 +92,12 @@ class BeliefAgent {
     return last_;
   }
 
-  Action would_do(State observation) const {
+  Action would_do(State observation) const { return decide(would_believe(observation)); }
+
+  /// The belief that the observation would lead to now. Valid until the next call.
+  const Belief& would_believe(State observation) const {
     probe_ = belief_;
-    return decide(started_ ? probe_.update(last_, observation) : probe_.reset(observation));
+    return started_ ? probe_.update(last_, observation) : probe_.reset(observation);
   }
 
   /// What the agent holds possible: M_t after `begin` or `act`.
