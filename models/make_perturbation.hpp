@@ -55,7 +55,7 @@ template <class Scalar>
 Perturbation<Scalar> make_perturbation(const Model<Scalar>& model, const GeometryOverrides<Scalar>& overrides = {}) {
   using Kind = typename Geometry<Scalar>::Kind;
   const Geometry<Scalar> g = resolve_geometry(model, overrides);
-  const auto balls = [&]() -> Perturbation<Scalar> {
+  auto balls = [&]() -> Perturbation<Scalar> {
     switch (g.kind) {
       case Kind::points:
         return {Metric<Scalar>::from_points(g.points, g.norm), *g.eps};
