@@ -104,11 +104,14 @@ void concentrate(Draft& draft, double m) {
   }
 }
 
-/// P = (1-t) nu + t P0, with one random common row nu of `common` successors for each action.
-void contract(Draft& draft, double t, State common, double sharpness, Stream& rng) {
+/// P = (1-t) nu_a + t P0, with a random common row nu_a of `common` successors for each action, or one for all.
+void contract(Draft& draft, double t, State common, const LipschitzMdpOptions& options, Stream& rng) {
+  Eigen::RowVectorXd nu;
   for (auto& rows : draft.rows) {
-    Eigen::RowVectorXd nu = Eigen::RowVectorXd::Zero(rows.cols());
-    draw_row(nu.row(0), common, sharpness, rng);
+    if (nu.size() == 0 || !options.same_common_row) {
+      nu = Eigen::RowVectorXd::Zero(rows.cols());
+      draw_row(nu.row(0), common, options.sharpness, rng);
+    }
     rows *= t;
     rows.rowwise() += (1 - t) * nu;
   }
@@ -136,7 +139,7 @@ std::vector<QTable<double>> random_lipschitz_kernel(const PairwiseDistances& dis
   const double l_p = std::min(options.l_p, reach);
   const double drafted = lipschitz_constant_of(draft.rows, distances);
   if (drafted > l_p || drafted == 0) {
-    contract(draft, l_p > 0 ? l_p / drafted : 0, common, options.sharpness, rng);
+    contract(draft, l_p > 0 ? l_p / drafted : 0, common, options, rng);
   } else {
     concentrate(draft, largest_concentration(draft, distances, l_p));
   }

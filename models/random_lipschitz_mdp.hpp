@@ -35,9 +35,10 @@ struct LipschitzMdpOptions {
   std::optional<double> reward_span;    ///< max R - min R; drawn if absent
   double action_gap = std::numeric_limits<double>::infinity();  ///< largest |R(s,a) - R(s,0)| allowed
 
-  double l_p = 0.1;        ///< smallest Lipschitz constant of P (Assumption 1), >= 0
-  State successors = 0;    ///< largest number of successors of a row, at least 2; 0 = dense
-  double sharpness = 0.5;  ///< in [0,1]: how much of a row goes to one random state before l_p is imposed
+  double l_p = 0.1;              ///< smallest Lipschitz constant of P (Assumption 1), >= 0
+  State successors = 0;          ///< largest number of successors of a row, at least 2; 0 = dense
+  double sharpness = 0.5;        ///< in [0,1]: how much of a row goes to one random state before l_p is imposed
+  bool same_common_row = false;  ///< nu_a is the same for every a, so that where to go hardly depends on the action
 };
 
 /// A random MDP whose constants, recomputed by `model_constants`, are the requested l_r and l_p up to rounding

@@ -105,7 +105,8 @@ Points grouped_points(State states, int dimension, double side, double group_sid
   Eigen::Index s = 0;
   for (int group = 0; s < states; ++group) {
     const Eigen::Index first = s;
-    const Eigen::Index end = std::min<Eigen::Index>(states, s + rng.integer(2, 4));
+    const Eigen::Index last = group == 0 ? std::max(1, states - 1) : states;  // leave one for a second group
+    const Eigen::Index end = std::min<Eigen::Index>(last, s + rng.integer(2, 4));
     int attempts = 0;
     do {
       draw_in_box(points, first, side, rng);

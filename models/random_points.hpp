@@ -24,7 +24,7 @@ Metric<double>::Points random_points(PointLayout layout, State states, int dimen
 /// Groups of two to four points, each group inside a box of side `group_side`, the groups spread over
 /// [0, side]^dimension: a wide space whose balls of radius about `group_side` still hold more than one state. Points of
 /// a group are at least group_side / 10 apart. The first points of the first two groups lie at the two ends of the
-/// first axis, so that the diameter is at least `side`.
+/// first axis, so that the diameter is at least `side` when there are two states or more.
 /// Throws InputError unless states >= 1, 1 <= dimension <= 16 and 0 < group_side < side, all finite.
 Metric<double>::Points grouped_points(State states, int dimension, double side, double group_side, Stream& rng);
 
