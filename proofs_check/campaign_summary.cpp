@@ -26,26 +26,19 @@ void count(const Check& check, ClaimSummary& into) {
   into.assumption_fails += check.verdict == Verdict::assumption_fails;
 }
 
-/// Tightness and the worst instance of one claim over all records.
+/// Tightness of one claim over all records.
 void rank(const std::vector<TrialRecord>& records, ClaimId id, ClaimSummary& into) {
   std::vector<double> ratios;
-  double worst = -std::numeric_limits<double>::infinity();
   for (const TrialRecord& record : records) {
     const Check& check = record.found.check(id);
     count(check, into);
     if (check.verdict != Verdict::holds && check.verdict != Verdict::violated) continue;
     into.informative += record.found.informative(id);
-    const double excess = check.left - check.right;
-    if (!(excess <= worst)) {
-      worst = std::isnan(excess) ? std::numeric_limits<double>::infinity() : excess;
-      into.worst = check;
-      into.worst_trial = record.trial;
-    }
     const double ratio = check.tightness();
-    if (!std::isfinite(ratio)) continue;
     if (into.max_trial < 0 || ratio > into.max) {
       into.max = ratio;
       into.max_trial = record.trial;
+      into.tightest = check;
     }
     ratios.push_back(ratio);
   }
@@ -84,13 +77,12 @@ Json to_json(const Claim& claim, const ClaimSummary& s) {
             {"checked", s.checked()}, {"instances", s.instances},       {"holds", s.holds},
             {"violated", s.violated}, {"undetermined", s.undetermined}, {"assumption_fails", s.assumption_fails}};
   if (claim.is_bound) json["informative"] = s.informative;
-  json["tightness"] = {
-      {"median", number(s.median)}, {"p99", number(s.p99)}, {"max", number(s.max)}, {"max_trial", s.max_trial}};
-  json["worst"] = {{"trial", s.worst_trial},
-                   {"n", s.worst.n},
-                   {"left", number(s.worst.left)},
-                   {"right", number(s.worst.right)},
-                   {"slack", number(s.worst.slack)}};
+  json["tightness"] = {{"median", number(s.median)}, {"p99", number(s.p99)}, {"max", number(s.max)}};
+  json["tightest"] = {{"trial", s.max_trial},
+                      {"n", s.tightest.n},
+                      {"left", number(s.tightest.left)},
+                      {"right", number(s.tightest.right)},
+                      {"slack", number(s.tightest.slack)}};
   return json;
 }
 

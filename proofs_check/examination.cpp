@@ -15,22 +15,32 @@
 
 namespace maximin {
 
+namespace {
+
+double certain_ratio(double left, double right, double slack) {
+  constexpr double violated = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(left) || !std::isfinite(right) || !std::isfinite(slack)) return violated;
+  const double certain = left - slack;
+  if (certain <= 0) return right + slack >= left ? 0 : violated;
+  return right > 0 ? certain / right : violated;
+}
+
+}  // namespace
+
 void Check::observe(double l, double r, double s, long round) {
-  const bool known = std::isfinite(l) && std::isfinite(r) && std::isfinite(s);
-  const bool worse = instances == 0 || !known || (std::isfinite(left) && l - r - s > left - right - slack);
-  ++instances;
-  if (worse) {
+  const double ratio = certain_ratio(l, r, s);
+  if (instances++ == 0 || ratio > tightness()) {
     left = l;
     right = r;
     slack = s;
     n = round;
   }
-  const bool seen = known && l <= r + s;
-  if (verdict != Verdict::violated) verdict = seen ? Verdict::holds : Verdict::violated;
+  least_right = std::min(least_right, r);
+  if (verdict != Verdict::violated) verdict = ratio <= 1 ? Verdict::holds : Verdict::violated;
 }
 
 double Check::tightness() const {
-  return right > 0 ? left / right : std::numeric_limits<double>::quiet_NaN();
+  return certain_ratio(left, right, slack);
 }
 
 bool Examination::any(Verdict verdict) const {
@@ -39,7 +49,7 @@ bool Examination::any(Verdict verdict) const {
 
 bool Examination::informative(ClaimId id) const {
   const Check& c = check(id);
-  return (c.verdict == Verdict::holds || c.verdict == Verdict::violated) && c.right < trivial;
+  return (c.verdict == Verdict::holds || c.verdict == Verdict::violated) && c.least_right < trivial;
 }
 
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -23,18 +24,21 @@ enum class Verdict {
 };
 
 /// One claim on one model: `left <= right` was wanted, and counts as seen while left <= right + slack.
-/// The worst instance over n (and over pairs of states, and actions) is kept: the one of largest left - right - slack.
+/// Of all its instances (rounds n, pairs of states, actions) the tightest is kept.
 struct Check {
   Verdict verdict = Verdict::not_asked;
   double left = 0;
   double right = 0;
   double slack = 0;  ///< certified numerical error of both sides together
-  long n = -1;       ///< the round of the worst instance, or -1 where there is none
+  long n = -1;       ///< the round of the tightest instance, or -1 where there is none
+  double least_right = std::numeric_limits<double>::infinity();  ///< over all instances: the bound at its best n
   long instances = 0;
 
-  /// Takes one instance into account. NaN or infinity on either side is a violation.
+  /// Takes one instance into account. NaN or infinity on any side is a violation.
   void observe(double l, double r, double s, long round = -1);
-  /// left/right, or NaN where right is not positive.
+
+  /// (left - slack)/right: what is certain of left/right. Above 1 exactly when the instance is violated; infinite for a
+  /// violation with right = 0 or a side that is not finite; 0 when left is within the slack of 0.
   double tightness() const;
 };
 
@@ -73,7 +77,7 @@ struct Examination {
   const Check& check(ClaimId id) const { return checks[static_cast<std::size_t>(id)]; }
   Check& check(ClaimId id) { return checks[static_cast<std::size_t>(id)]; }
   bool any(Verdict verdict) const;
-  /// Whether the claim's bound says anything on this model: right side below `trivial`.
+  /// Whether the claim's bound says anything on this model: least right side below `trivial`.
   bool informative(ClaimId id) const;
 };
 

@@ -45,6 +45,7 @@ Json check_to_json(const Check& check) {
           {"right", number(check.right)},
           {"slack", number(check.slack)},
           {"n", check.n},
+          {"least_right", number(check.least_right)},
           {"instances", check.instances}};
 }
 
@@ -55,6 +56,7 @@ Check check_from_json(const Json& json) {
   check.right = number(json.at("right"));
   check.slack = number(json.at("slack"));
   check.n = json.at("n").get<long>();
+  check.least_right = number(json.at("least_right"));
   check.instances = json.at("instances").get<long>();
   return check;
 }
