@@ -56,7 +56,7 @@ class MaximinJsonReader {
   void check_header() const {
     const JsonValue format = root_.member("format", "\"maximin-mdp\"");
     if (format.string("\"maximin-mdp\"") != "maximin-mdp") {
-      format.fail(fmt::format("format {}, expected \"maximin-mdp\"", quoted(format.text())));
+      format.fail(fmt::format("format {}, expected \"maximin-mdp\"", in_quotes(format.text())));
     }
     const JsonValue version = root_.member("version", "1");
     if (version.count("version") != 1) version.fail(fmt::format("version {}, expected 1", version.text()));
@@ -134,11 +134,9 @@ class MaximinJsonReader {
     std::set<std::string_view> seen;
     for (const JsonValue name : list->array("one name each", count)) {
       const std::string_view text = name.string("a name");
-      if (text.empty()) name.fail("empty, expected a name");
-      if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; })) {
-        name.fail(fmt::format("{} has control characters, expected a name", quoted(text)));
-      }
-      if (!seen.insert(text).second) name.fail(fmt::format("{} given twice, expected distinct names", quoted(text)));
+      if (!is_name(text))
+        name.fail(fmt::format("{}: empty or with control characters, expected a name", in_quotes(text)));
+      if (!seen.insert(text).second) name.fail(fmt::format("{} given twice, expected distinct names", in_quotes(text)));
       names.emplace_back(text);
     }
     return names;
@@ -156,7 +154,7 @@ class MaximinJsonReader {
     if (value->kind() == JsonValue::Kind::string) {
       const auto found = std::find(names.begin(), names.end(), value->text());
       if (found == names.end())
-        value->fail(fmt::format("no state is named {}", quoted(value->text())) + ", expected one of state_names");
+        value->fail(fmt::format("no state is named {}", in_quotes(value->text())) + ", expected one of state_names");
       start[static_cast<std::size_t>(found - names.begin())] = Scalar(1);
       return start;
     }
@@ -164,7 +162,7 @@ class MaximinJsonReader {
     std::size_t s = 0;
     for (const JsonValue p : value->array("a state, or one probability per state", count)) {
       start[s] = p.template number<Scalar>("probability");
-      if (start[s] < Scalar(0)) p.fail(fmt::format("probability {}: negative, expected 0 to 1", quoted(p.text())));
+      if (start[s] < Scalar(0)) p.fail(fmt::format("probability {}: negative, expected 0 to 1", in_quotes(p.text())));
       sum += start[s++];
     }
     if (const auto defect = defect_of(sum)) {
@@ -207,7 +205,7 @@ class MaximinJsonReader {
     } else if (chosen) {
       const std::string_view text = chosen->string("\"hops\" or \"discrete\"");
       if (text != "hops" && text != "discrete") {
-        chosen->fail(fmt::format("metric {}, expected \"hops\" or \"discrete\"", quoted(text)));
+        chosen->fail(fmt::format("metric {}, expected \"hops\" or \"discrete\"", in_quotes(text)));
       }
       geometry.kind = text == "hops" ? Kind::hops : Kind::discrete;
     }
@@ -219,10 +217,10 @@ class MaximinJsonReader {
     const auto value = root_.find("eps");
     if (!value) return std::nullopt;
     const Scalar eps = value->template number<Scalar>("eps");
-    if (eps < Scalar(0)) value->fail(fmt::format("eps {}: negative, expected eps >= 0", quoted(value->text())));
+    if (eps < Scalar(0)) value->fail(fmt::format("eps {}: negative, expected eps >= 0", in_quotes(value->text())));
     if (balls_given && eps != Scalar(1)) {
       value->fail(fmt::format("eps {} with 'neighbourhoods', expected 1 or none: the lists are the balls",
-                              quoted(value->text())));
+                              in_quotes(value->text())));
     }
     return eps;
   }
@@ -231,7 +229,7 @@ class MaximinJsonReader {
     const std::string_view text = value.string("\"l1\", \"l2\" or \"linf\"");
     if (text == "l1") return Norm::l1;
     if (text == "l2") return Norm::l2;
-    if (text != "linf") value.fail(fmt::format("norm {}, expected \"l1\", \"l2\" or \"linf\"", quoted(text)));
+    if (text != "linf") value.fail(fmt::format("norm {}, expected \"l1\", \"l2\" or \"linf\"", in_quotes(text)));
     return Norm::linf;
   }
 

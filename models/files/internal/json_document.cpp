@@ -129,7 +129,7 @@ std::string JsonDocument::path(std::uint32_t index) const {
       const bool plain = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
         return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
       });
-      out.insert(0, plain && key.size() <= 40 ? fmt::format(".{}", key) : fmt::format("[{}]", quoted(key)));
+      out.insert(0, plain && key.size() <= 40 ? fmt::format(".{}", key) : fmt::format("[{}]", in_quotes(key)));
     } else {
       std::size_t place = 0;
       for (std::uint32_t i = node.parent + 1; i != index; i = nodes_[i].end) ++place;
@@ -214,7 +214,7 @@ std::uint64_t JsonValue::count(std::string_view name) const {
 std::uint32_t JsonValue::index(std::string_view name, std::size_t below) const {
   const std::optional<std::uint64_t> value = kind() == Kind::number ? parse_count(text()) : std::nullopt;
   if (!value || *value >= below) {
-    const std::string shown = kind() == Kind::array || kind() == Kind::object ? "" : " " + quoted(text());
+    const std::string shown = kind() == Kind::array || kind() == Kind::object ? "" : " " + in_quotes(text());
     fail(fmt::format("{}{}: no such {}, expected an integer from 0 to {}", name, shown, name, below - 1));
   }
   return static_cast<std::uint32_t>(*value);

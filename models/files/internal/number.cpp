@@ -28,12 +28,12 @@ bool take(std::string_view& text, std::string_view any_of) {
 std::string describe_fault(NumberFault fault, std::string_view name, std::string_view token) {
   switch (fault) {
     case NumberFault::zero_denominator:
-      return fmt::format("{} {}: denominator 0, expected a fraction such as 1/3", name, quoted(token));
+      return fmt::format("{} {}: denominator 0, expected a fraction such as 1/3", name, in_quotes(token));
     case NumberFault::out_of_range:
-      return fmt::format("{} {}: out of range, expected a finite number", name, quoted(token));
+      return fmt::format("{} {}: out of range, expected a finite number", name, in_quotes(token));
     default:
       return fmt::format("{} {}: not a number, expected an integer, a decimal or a fraction such as 1/3", name,
-                         quoted(token));
+                         in_quotes(token));
   }
 }
 

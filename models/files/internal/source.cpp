@@ -8,6 +8,14 @@
 
 namespace maximin::internal {
 
+namespace {
+
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+}
+
+}  // namespace
+
 void Source::fail(std::size_t at, std::string_view message) const {
   throw InputError(fmt::format("{}: {}", place(at), message));
 }
@@ -19,13 +27,23 @@ std::string TextSource::place(std::size_t at) const {
 void TextSource::require_text(std::string_view text) const {
   std::size_t line = 1;
   while (!text.empty()) {
-    const std::size_t length = text.front() == '\0' ? 0 : utf8_length(text);
-    if (length == 0) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0 || (is_control(text.front()) && std::string_view("\t\n\r").find(text.front()) == text.npos)) {
       fail(line, fmt::format("byte 0x{:02x} is not text, expected UTF-8", static_cast<unsigned char>(text.front())));
     }
     if (text.front() == '\n') ++line;
     text.remove_prefix(length);
   }
+}
+
+bool is_name(std::string_view text) {
+  bool good = !text.empty();
+  while (good && !text.empty()) {
+    const std::size_t length = utf8_length(text);
+    good = length > 0 && !is_control(text.front());
+    text.remove_prefix(length);
+  }
+  return good;
 }
 
 std::size_t utf8_length(std::string_view text) {
@@ -48,13 +66,13 @@ std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-std::string quoted(std::string_view token) {
+std::string in_quotes(std::string_view token) {
   constexpr std::size_t longest = 40;
   std::string out = "'";
   while (!token.empty() && out.size() <= longest) {
     const std::size_t length = utf8_length(token);
     const auto byte = static_cast<unsigned char>(token.front());
-    if (length == 0 || byte < 0x20 || byte == 0x7F) {
+    if (length == 0 || is_control(token.front())) {
       out += fmt::format("\\x{:02x}", byte);
       token.remove_prefix(1);
     } else {

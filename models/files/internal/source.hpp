@@ -34,15 +34,18 @@ class TextSource : public Source {
   using Source::Source;
   std::string place(std::size_t at) const override;
 
-  /// Throws InputError unless the text is UTF-8 without NUL bytes.
+  /// Throws InputError unless the text is UTF-8 without control characters other than tabs and line ends.
   void require_text(std::string_view text) const;
 };
 
 /// The token in quotes, cut to a readable length, with control characters and stray bytes escaped.
-std::string quoted(std::string_view token);
+std::string in_quotes(std::string_view token);
 
 /// The length of the UTF-8 sequence at the front of `text`, or 0 when there is none.
 std::size_t utf8_length(std::string_view text);
+
+/// Whether the text may name a state or an action: UTF-8, not empty, without control characters.
+bool is_name(std::string_view text);
 
 /// The candidate nearest to `word` by edit distance, or an empty string when none is near.
 std::string nearest(std::string_view word, std::span<const std::string_view> candidates);
