@@ -1,7 +1,8 @@
+#include <maximin/models/model_draft.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <maximin/models/model_draft.hpp>
 #include <numeric>
 #include <utility>
 

@@ -1,16 +1,18 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <maximin/models/model_family.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <maximin/models/model_family.hpp>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <maximin/models/pairwise_distances.hpp>
 #include <maximin/models/random_lipschitz_mdp.hpp>
 #include <maximin/models/rescale.hpp>
 #include <maximin/theory/lipschitz.hpp>
-#include <utility>
-#include <vector>
 
 namespace maximin {
 namespace {

@@ -1,6 +1,7 @@
+#include <maximin/models/pairwise_distances.hpp>
+
 #include <fmt/format.h>
 
-#include <maximin/models/pairwise_distances.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin {

@@ -1,10 +1,12 @@
-#include <fmt/format.h>
+#include <maximin/models/random_lipschitz_kernel.hpp>
 
 #include <algorithm>
 #include <cstddef>
-#include <maximin/models/random_lipschitz_kernel.hpp>
-#include <maximin/theory/error.hpp>
 #include <vector>
+
+#include <fmt/format.h>
+
+#include <maximin/theory/error.hpp>
 
 namespace maximin {
 namespace {

@@ -1,13 +1,15 @@
-#include <fmt/format.h>
+#include <maximin/models/random_lipschitz_mdp.hpp>
 
 #include <cmath>
 #include <cstddef>
-#include <maximin/models/pairwise_distances.hpp>
-#include <maximin/models/random_lipschitz_kernel.hpp>
-#include <maximin/models/random_lipschitz_mdp.hpp>
-#include <maximin/models/random_lipschitz_rewards.hpp>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
+
+#include <maximin/models/pairwise_distances.hpp>
+#include <maximin/models/random_lipschitz_kernel.hpp>
+#include <maximin/models/random_lipschitz_rewards.hpp>
 
 namespace maximin {
 namespace {

@@ -1,11 +1,13 @@
-#include <fmt/format.h>
+#include <maximin/models/random_lipschitz_rewards.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <maximin/models/random_lipschitz_rewards.hpp>
-#include <maximin/theory/error.hpp>
 #include <numeric>
 #include <vector>
+
+#include <fmt/format.h>
+
+#include <maximin/theory/error.hpp>
 
 namespace maximin {
 namespace {

@@ -1,10 +1,11 @@
-#include <fmt/format.h>
+#include <maximin/models/random_points.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <maximin/models/random_points.hpp>
+
+#include <fmt/format.h>
 
 namespace maximin {
 namespace {

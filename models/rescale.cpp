@@ -1,6 +1,8 @@
 #include <maximin/models/rescale.hpp>
-#include <maximin/theory/error.hpp>
+
 #include <utility>
+
+#include <maximin/theory/error.hpp>
 
 namespace maximin {
 

@@ -1,12 +1,14 @@
-#include <fmt/format.h>
+#include <maximin/models/shrink.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <maximin/models/model_draft.hpp>
-#include <maximin/models/shrink.hpp>
 #include <tuple>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include <maximin/models/model_draft.hpp>
 
 namespace maximin {
 namespace {

@@ -1,9 +1,11 @@
-#include <algorithm>
-#include <maximin/models/model_family.hpp>
-#include <maximin/models/random_points.hpp>
 #include <maximin/models/small_random_model.hpp>
+
+#include <algorithm>
 #include <utility>
 #include <vector>
+
+#include <maximin/models/model_family.hpp>
+#include <maximin/models/random_points.hpp>
 
 namespace maximin {
 namespace {

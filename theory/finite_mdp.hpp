@@ -130,9 +130,13 @@ class FiniteMdpBuilder {
   /// Checks that no (s,a,s') was given twice and that every row sums to 1: exactly for an exact scalar, otherwise to
   /// `row_tolerance()`. Throws InputError naming the first (s,a) at fault.
   FiniteMdp<Scalar> build() && {
-    std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& x, const Entry& y) {
+    const auto before = [](const Entry& x, const Entry& y) {
       return std::tie(x.state, x.action, x.successor.target) < std::tie(y.state, y.action, y.successor.target);
-    });
+    };
+    // Most come in order, and sorting would double the memory that a model of millions of transitions takes.
+    if (!std::is_sorted(entries_.begin(), entries_.end(), before)) {
+      std::stable_sort(entries_.begin(), entries_.end(), before);
+    }
     mdp_.row_begin_.reserve(static_cast<std::size_t>(states_) * static_cast<std::size_t>(actions_) + 1);
     mdp_.transitions_.reserve(entries_.size());
     mdp_.row_begin_.push_back(0);
