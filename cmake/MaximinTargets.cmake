@@ -22,13 +22,6 @@ if(MAXIMIN_SANITIZE)
   target_compile_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE})
 endif()
-if(MAXIMIN_BUILD_FUZZERS)
-  # The libraries under test report their coverage to the fuzzer that links them.
-  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    message(FATAL_ERROR "MAXIMIN_BUILD_FUZZERS needs clang, the compiler is ${CMAKE_CXX_COMPILER_ID}; use --preset fuzz")
-  endif()
-  target_compile_options(maximin_options INTERFACE -fsanitize=fuzzer-no-link)
-endif()
 
 # maximin_package(NAME VERSION [argument...]): find_package, and the version remembered for who links the installed tree.
 macro(maximin_package name version)
