@@ -92,7 +92,7 @@ QTable<Scalar> hop_distances(const FiniteMdp<Scalar>& mdp) {
                      std::to_string(max_hop_states) + "; give points and a norm instead");
   }
   const Scalar unreachable =
-      std::numeric_limits<Scalar>::has_infinity ? std::numeric_limits<Scalar>::infinity() : Scalar(n);
+      std::numeric_limits<Scalar>::has_infinity ? Scalar(std::numeric_limits<Scalar>::infinity()) : Scalar(n);
   QTable<Scalar> distances(n, n);
   for_each_hops(undirected(transition_graph(mdp)), [&](State s, std::span<const State> hops) {
     for (State t = 0; t < n; ++t) {

@@ -126,7 +126,7 @@ class Perturbation {
   static QTable<Scalar> hops(const std::vector<std::vector<State>>& lists) {
     const auto n = static_cast<Eigen::Index>(lists.size());
     const Scalar unreachable =
-        std::numeric_limits<Scalar>::has_infinity ? std::numeric_limits<Scalar>::infinity() : Scalar(n);
+        std::numeric_limits<Scalar>::has_infinity ? Scalar(std::numeric_limits<Scalar>::infinity()) : Scalar(n);
     QTable<Scalar> d = QTable<Scalar>::Constant(n, n, unreachable);
     std::vector<State> queue;
     for (State s = 0; s < n; ++s) {
