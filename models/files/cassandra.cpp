@@ -91,7 +91,7 @@ class CassandraReader {
     }
     const auto defect = defect_of(sum);
     if (!defect) return;
-    if (!(*defect <= slack())) source_.fail(preamble_.start_line, "start: " + wrong_sum(sum));
+    if (!(*defect <= slack())) source_.fail(preamble_.start_line, "start: " + wrong_sum(source_, sum));
     for (Scalar& p : start_) p = Scalar(p / sum);
     start_scaled_ = true;
   }
@@ -318,8 +318,8 @@ class CassandraReader {
     const Scalar sum = sum_of(row);
     const auto defect = defect_of(sum);
     if (defect && !(*defect <= slack())) {
-      source_.fail(match.line(),
-                   fmt::format("this reward needs O for action {} and state {}, whose {}", a, target, wrong_sum(sum)));
+      source_.fail(match.line(), fmt::format("this reward needs O for action {} and state {}, whose {}", a, target,
+                                             wrong_sum(source_, sum)));
     }
     for (const auto& [o, q] : row) {
       reward.add(Scalar(weight * (defect ? Scalar(q / sum) : q)), match.value(static_cast<std::size_t>(o)));

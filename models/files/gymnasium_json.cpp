@@ -78,7 +78,7 @@ class GymnasiumReader {
   /// An array of `size` elements, or an object whose members are named "0", "1", ... in order.
   JsonValue indexed(const JsonValue& value, std::string_view name, std::size_t size) const {
     if (value.kind() != JsonValue::Kind::object) return value.array(name, size);
-    if (value.size() != size) value.fail(fmt::format("{} members, expected {}: {}", value.size(), size, name));
+    if (value.size() != size) value.fail(fmt::format("length {}, expected {}: {}", value.size(), size, name));
     std::size_t i = 0;
     for (const JsonValue member : value) {
       if (member.key() != std::to_string(i)) member.fail(fmt::format("out of order, expected the name \"{}\"", i));
@@ -132,7 +132,7 @@ class GymnasiumReader {
     }
     if (const auto defect = defect_of(sum)) {
       // Dumped as floats: 1/300 three hundred times is 1 only to rounding.
-      if (!(*defect <= Scalar(Scalar(1) / Scalar(1'000'000'000)))) list->fail(wrong_sum(sum));
+      if (!(*defect <= Scalar(Scalar(1) / Scalar(1'000'000'000)))) list->fail(wrong_sum(document_, sum));
       for (Scalar& p : start) p = Scalar(p / sum);
     }
     start.resize(states_, Scalar(0));

@@ -66,6 +66,7 @@ class MaximinJsonReader {
     const JsonValue states = root_.member("states", "the number of states");
     const JsonValue actions = root_.member("actions", "the number of actions");
     const std::uint64_t s = states.count("number of states"), a = actions.count("number of actions");
+    if (a < 1) actions.fail("0 actions, expected at least 1");
     require_size(document_, states.at(), s, a, options_.limits);
     // Every (state, action) needs a transition, so a count that the file cannot back is refused before it is believed.
     const JsonValue transitions = root_.member("transitions", "a list of [state, action, next state, probability]")
@@ -166,7 +167,7 @@ class MaximinJsonReader {
       sum += start[s++];
     }
     if (const auto defect = defect_of(sum)) {
-      if (!(*defect <= json_slack<Scalar>())) value->fail(wrong_sum(sum));
+      if (!(*defect <= json_slack<Scalar>())) value->fail(wrong_sum(document_, sum));
       for (Scalar& p : start) p = Scalar(p / sum);
       notes.push_back("start: summed to 1 only nearly; scaled to sum to 1");
     }

@@ -15,6 +15,7 @@ using internal::number_text;
 template <class Scalar>
 std::string json_number(const Scalar& value) {
   std::string text = number_text(value);
+  if (text == "-0") return "-0.0";  // an integer -0 is read as 0
   return text.find('/') == std::string::npos ? text : '"' + text + '"';
 }
 

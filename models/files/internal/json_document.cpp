@@ -40,6 +40,7 @@ class JsonDocument::Builder : public nlohmann::json_sax<nlohmann::json> {
     std::string what = error.what();
     if (const auto prefix = what.find("] "); prefix != std::string::npos) what.erase(0, prefix + 2);
     if (what.starts_with("parse error at line")) what.erase(0, what.find(": ") + 2);
+    if (what.find("expected") == std::string::npos) what += ", expected a number that a double can hold";
     for (char& c : what) {
       if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7F) c = '?';
     }
@@ -186,7 +187,7 @@ JsonValue JsonValue::array(std::string_view name) const {
 }
 
 JsonValue JsonValue::array(std::string_view name, std::size_t wanted) const {
-  if (array(name).size() != wanted) fail(fmt::format("{} elements, expected {}: {}", size(), wanted, name));
+  if (array(name).size() != wanted) fail(fmt::format("length {}, expected {}: {}", size(), wanted, name));
   return *this;
 }
 
@@ -201,7 +202,7 @@ std::string_view JsonValue::string(std::string_view name) const {
 }
 
 bool JsonValue::boolean(std::string_view name) const {
-  if (kind() != Kind::boolean) fail(fmt::format("neither true nor false, expected {}", name));
+  if (kind() != Kind::boolean) fail(fmt::format("neither true nor false, expected one: {}", name));
   return text() == "true";
 }
 

@@ -92,6 +92,7 @@ class JsonDocument : public Source {
 
   JsonValue root() const { return JsonValue(this, 0); }
   std::string place(std::size_t at) const override;
+  std::string_view hint_on_sums() const override { return "; thirds can be written as fractions, \"1/3\""; }
 
  private:
   friend class JsonValue;

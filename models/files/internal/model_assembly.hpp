@@ -19,8 +19,8 @@ namespace maximin::internal {
 /// Fails unless states and actions are at least one and |S||A| is within the limits. Call it before allocating.
 inline void require_size(const Source& source, std::size_t at, std::uint64_t states, std::uint64_t actions,
                          const ReadLimits& limits) {
-  if (states < 1) source.fail(at, "states: 0, expected at least 1");
-  if (actions < 1) source.fail(at, "actions: 0, expected at least 1");
+  if (states < 1) source.fail(at, "0 states, expected at least 1");
+  if (actions < 1) source.fail(at, "0 actions, expected at least 1");
   if (states > limits.pairs || actions > limits.pairs || states * actions > limits.pairs) {
     source.fail(at, fmt::format("{} states and {} actions are too many, expected at most {} (state, action) pairs",
                                 states, actions, limits.pairs));
@@ -55,9 +55,9 @@ std::optional<Scalar> defect_of(const Scalar& sum) {
 
 /// What is said of a sum that is not 1.
 template <class Scalar>
-std::string wrong_sum(const Scalar& sum) {
-  return fmt::format("probabilities sum to {}, expected 1 (thirds can be written as fractions, \"1/3\")",
-                     number_text(static_cast<double>(sum)));
+std::string wrong_sum(const Source& source, const Scalar& sum) {
+  return fmt::format("probabilities sum to {}, expected 1{}", number_text(static_cast<double>(sum)),
+                     source.hint_on_sums());
 }
 
 /// The discount to use: the one asked for, else the one in the file, else the default with a note.
@@ -167,7 +167,8 @@ class ModelAssembly {
     const std::optional<Scalar> defect = defect_of(sum);
     if (!defect) return;
     if (!(*defect <= slack_)) {
-      source_.fail(entries_[begin].at, row(entries_[begin].state, entries_[begin].action) + ": " + wrong_sum(sum));
+      source_.fail(entries_[begin].at,
+                   row(entries_[begin].state, entries_[begin].action) + ": " + wrong_sum(source_, sum));
     }
     for (std::size_t i = begin; i < end; ++i) entries_[i].probability = Scalar(entries_[i].probability / sum);
     ++repaired_;

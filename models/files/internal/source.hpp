@@ -19,6 +19,9 @@ class Source {
   /// "FILE:LINE" or "FILE: $.path"; position 0 is the file as a whole.
   virtual std::string place(std::size_t at) const = 0;
 
+  /// What to add where probabilities do not sum to 1: how the format writes them exactly, if it can.
+  virtual std::string_view hint_on_sums() const { return ""; }
+
   /// Throws InputError("PLACE: MESSAGE").
   [[noreturn]] void fail(std::size_t at, std::string_view message) const;
 
