@@ -17,7 +17,7 @@
 /// paper leaves the rewards open; they cancel in the difference and are 0 here.
 namespace maximin::non_contraction {
 
-/// An exact discount.
+/// An exact discount. Compare fractions with fractions only: in C++20 boost::rational == int calls itself for ever.
 using Fraction = boost::rational<std::int64_t>;
 
 /// The model with discount gamma, 0 <= gamma < 1.
@@ -79,7 +79,7 @@ struct ExactDistances {
   /// |T Q1 - T Q2|, exactly.
   Fraction after(const Fraction& gamma) const { return gamma * after_per_gamma; }
   /// Whether |T Q1 - T Q2| > |Q1 - Q2|.
-  bool expands(const Fraction& gamma) const { return after(gamma) > before; }
+  bool expands(const Fraction& gamma) const { return after(gamma) > Fraction(before); }
 };
 
 ExactDistances exact_distances(TieBreak tie = TieBreak::lowest_index);
