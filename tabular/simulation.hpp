@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include <maximin/tabular/tabular_agents.hpp>
 #include <maximin/tabular/tabular_attacks.hpp>

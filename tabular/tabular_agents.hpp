@@ -20,7 +20,8 @@ concept TransparentAgent = Agent<A> && requires(const A& agent, const typename A
   { agent.would_do(o) } -> std::convertible_to<typename A::ActionType>;
 };
 
-/// An agent with a stationary policy pi: it does policy[t] when it sees t, and remembers nothing.
+/// An agent with a stationary policy pi: it does policy[t] when it sees t, and remembers nothing. Throws
+/// std::out_of_range on an observation that it has no action for.
 class TabularAgent {
  public:
   using ObservationType = State;
@@ -30,7 +31,7 @@ class TabularAgent {
 
   Action begin(State observation, Stream&) const { return would_do(observation); }
   Action act(State observation, Stream&) const { return would_do(observation); }
-  Action would_do(State observation) const { return policy_[static_cast<std::size_t>(observation)]; }
+  Action would_do(State observation) const { return policy_.at(static_cast<std::size_t>(observation)); }
 
   const Policy& policy() const { return policy_; }
 

@@ -38,14 +38,15 @@ class RandomAttack {
   const Perturbation<Scalar>* perturbation_;
 };
 
-/// A stationary omega, e.g. the optimal attack on a fixed policy: shows attack[s].
+/// A stationary omega, e.g. the optimal attack on a fixed policy: shows attack[s]. Throws std::out_of_range in a state
+/// that it has no answer for.
 class FixedAttack {
  public:
   explicit FixedAttack(AttackPolicy attack) : attack_(std::move(attack)) {}
 
   template <class AgentT>
   State perturb(State truth, const AgentT&, Stream&) const {
-    return attack_[static_cast<std::size_t>(truth)];
+    return attack_.at(static_cast<std::size_t>(truth));
   }
 
  private:

@@ -246,6 +246,11 @@ TEST(Simulation, AnAttackOutsideTheBallIsAnErrorNotANumber) {
   EXPECT_THROW(simulate(env, agent, far, perturbation, {.episodes = 1}), std::logic_error);
   FixedAttack wrong(AttackPolicy{1, 0, 1, 2, 3, 4, 5, 0});
   EXPECT_THROW(simulate(env, agent, wrong, perturbation, {.episodes = 20}), std::logic_error);
+  FixedAttack too_short(AttackPolicy{0, 1});
+  EXPECT_THROW(simulate(env, agent, too_short, perturbation, {.episodes = 20}), std::logic_error);
+  TabularAgent ignorant(Policy{0});
+  NoAttack none;
+  EXPECT_THROW(simulate(env, ignorant, none, perturbation, {.episodes = 20}), std::logic_error);
   // Unchecked, the same attack contradicts the agent's history, and the agent counts it.
   evaluate(env, agent, far, 0.9, 50, 5, 1);
   EXPECT_GT(agent.belief_model().empty_intersections(), 0);
