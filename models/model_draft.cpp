@@ -95,20 +95,23 @@ Model<double> ModelDraft::build() && {
   return std::move(whole);
 }
 
-void ModelDraft::keep_states(const std::vector<bool>& kept, bool stay) {
+void ModelDraft::keep_states(const std::vector<bool>& kept, std::optional<State> instead) {
   std::vector<State> left, new_name(kept.size(), -1);
   for (std::size_t s = 0; s < kept.size(); ++s) {
     if (!kept[s]) continue;
     new_name[s] = static_cast<State>(left.size());
     left.push_back(static_cast<State>(s));
   }
+  const auto place_taker = [&](std::size_t i) {
+    return instead ? new_name[static_cast<std::size_t>(*instead)] : static_cast<State>(i);
+  };
   QTable<double> rewards_left(static_cast<Eigen::Index>(left.size()), rewards.cols());
   std::vector<std::vector<Row>> rows_left;
   for (std::size_t i = 0; i < left.size(); ++i) {
     rewards_left.row(static_cast<Eigen::Index>(i)) = rewards.row(left[i]);
     auto& of_state = rows_left.emplace_back();
     for (const Row& row : rows[static_cast<std::size_t>(left[i])]) {
-      of_state.push_back(renamed(row, new_name, stay ? static_cast<State>(i) : 0));
+      of_state.push_back(renamed(row, new_name, place_taker(i)));
     }
   }
   rewards = std::move(rewards_left);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <maximin/models/model.hpp>
@@ -24,8 +25,9 @@ struct ModelDraft {
   Model<double> build() &&;
 
   /// Keeps the states marked true (at least one) with their names, geometry and share of the start distribution.
-  /// Transitions to a dropped state lead back to the state they left if `stay`, else to the first state kept.
-  void keep_states(const std::vector<bool>& kept, bool stay);
+  /// Transitions to a dropped state lead to `instead`, a state that is kept, or, without it, back to the state they
+  /// left.
+  void keep_states(const std::vector<bool>& kept, std::optional<State> instead);
 
   /// Removes an action, of at least two.
   void drop_action(Action a);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -15,10 +16,11 @@ namespace {
 
 using Kind = Geometry<double>::Kind;
 
-/// What a number costs: ten for each character that it takes to write it, and among equals the smaller is cheaper.
+/// What a number costs: a hundred for each character that it takes to write it, and among equals the smaller is
+/// cheaper.
 std::size_t cost(double x) {
   if (x == 0) return 0;
-  return 10 * fmt::formatted_size("{}", x) + static_cast<std::size_t>(std::min(9.0, std::abs(x)));
+  return 100 * fmt::formatted_size("{}", x) + static_cast<std::size_t>(std::min(99.0, std::abs(x)));
 }
 
 template <class Matrix>
@@ -35,7 +37,7 @@ using Size = std::tuple<State, Action, std::size_t>;
 
 Size size_of(const Model<double>& model) {
   const auto& mdp = model.mdp;
-  std::size_t sum = 300 * mdp.transition_count() + cost(mdp.discount()) + cost_of_all(mdp.rewards()) +
+  std::size_t sum = 3000 * mdp.transition_count() + cost(mdp.discount()) + cost_of_all(mdp.rewards()) +
                     cost_of_all(model.geometry.points) + cost_of_all(model.geometry.distances) +
                     static_cast<std::size_t>(model.geometry.points.cols());
   for (State s = 0; s < mdp.states(); ++s) {
@@ -90,12 +92,18 @@ void for_each_row(ModelDraft& draft, Change change) {
 }
 
 bool offer_fewer_states(Offers& offers) {
+  constexpr std::size_t few = 12;  // states that may each take the place of a dropped one
   const auto n = static_cast<std::size_t>(offers.draft().states());
   const auto without = [&](std::size_t from, std::size_t to) {
     std::vector<bool> kept(n, true);
     for (std::size_t s = from; s < to; ++s) kept[s] = false;
-    return offers.offer([&](ModelDraft& d) { d.keep_states(kept, true); }) ||
-           offers.offer([&](ModelDraft& d) { d.keep_states(kept, false); });
+    if (offers.offer([&](ModelDraft& d) { d.keep_states(kept, std::nullopt); })) return true;
+    std::size_t tried = 0;
+    for (std::size_t s = 0; s < n; ++s) {
+      if (!kept[s] || (n > few && ++tried > 1)) continue;
+      if (offers.offer([&](ModelDraft& d) { d.keep_states(kept, static_cast<State>(s)); })) return true;
+    }
+    return false;
   };
   for (std::size_t chunk = n / 2; chunk >= 1; chunk /= 2) {
     for (std::size_t end = n; end >= chunk; end -= chunk) {

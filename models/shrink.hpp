@@ -19,7 +19,7 @@ Model<double> shrink(Model<double> model, const ModelPredicate& keeps, long max_
 /// whether it did. Each is valid, and comes before the given one in the order "fewer states, then fewer actions, then
 /// fewer transitions and characters to write all numbers down", so that shrinking ends. The steps:
 ///
-/// - drop half of the states, or one; what led to a dropped state stays where it is, or leads to the first state left
+/// - drop half of the states, or one; what led to a dropped state stays where it is, or leads to another
 /// - drop an action, a dimension of the points
 /// - make all rows deterministic, all rewards 0, integers, or of one or two decimals
 /// - move the points to the origin, measure them in units of eps, round them (they may then coincide); round eps and

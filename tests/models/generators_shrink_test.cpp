@@ -12,6 +12,8 @@
 #include <maximin/models/model_family.hpp>
 #include <maximin/models/shrink.hpp>
 #include <maximin/tabular/pessimistic_q_iteration.hpp>
+#include <maximin/tabular/value_iteration.hpp>
+#include <maximin/theory/bounds.hpp>
 #include <maximin/theory/lipschitz.hpp>
 
 namespace maximin {
@@ -117,6 +119,36 @@ TEST(Shrink, ACycleShrinksToAFewStatesAndShortNumbers) {
   }
 }
 
+/// A violation of Theorem 1 as printed, with R <= R_max only, shrinks to the size of the counterexample known by hand,
+/// three states and two actions; now and then to four states, of which none can go by itself.
+TEST(Shrink, AViolationShrinksToThreeStatesOrFour) {
+  const ModelPredicate violates = [](const Model<double>& m) {
+    const auto balls = make_perturbation(m);
+    const auto c = model_constants(m.mdp, balls.metric());
+    const auto run = pessimistic_q_iteration(m.mdp, balls);
+    if (!c.finite() || run.fate != Fate::settled) return false;
+    const double gamma = m.mdp.discount();
+    const double l =
+        bounds::lipschitz_of_q_printed(gamma, c.l_r.value, c.l_p.value, m.mdp.states(), std::max(0.0, c.r_max_signed));
+    const double bound = bounds::theorem_1(gamma, bounds::delta(balls.radius(), gamma, l));
+    return (value_iteration(m.mdp).q - run.q).cwiseAbs().maxCoeff() > bound + 1e-6;
+  };
+  int seen = 0, three = 0;
+  for (std::uint64_t trial = 0; seen < 10; ++trial) {
+    Stream rng(12, trial);
+    const auto model = draw_family_member(Family::costs, {.states = Range<State>{5, 8}}, rng).model;
+    if (!violates(model)) continue;
+    ++seen;
+    const auto small = shrink(model, violates);
+    EXPECT_TRUE(violates(small));
+    EXPECT_LE(small.mdp.states(), 4) << "trial " << trial;
+    EXPECT_EQ(small.mdp.actions(), 2) << "trial " << trial;
+    EXPECT_EQ(small.mdp.transition_count(), static_cast<std::size_t>(2 * small.mdp.states())) << "trial " << trial;
+    three += small.mdp.states() == 3;
+  }
+  EXPECT_GE(three, 6);
+}
+
 TEST(Shrink, TriesNoMoreThanAllowed) {
   Stream rng(1);
   const auto model = draw_family_member(Family::informative, {}, rng).model;
@@ -144,7 +176,7 @@ Model<double> three_states() {
 
 TEST(ModelDraft, DroppedStatesAreRedirected) {
   ModelDraft draft(three_states());
-  draft.keep_states({true, false, true}, true);
+  draft.keep_states({true, false, true}, std::nullopt);
   const auto m = std::move(draft).build();
   ASSERT_EQ(m.mdp.states(), 2);
   EXPECT_EQ(m.mdp.reward(1, 0), 12);
@@ -156,10 +188,11 @@ TEST(ModelDraft, DroppedStatesAreRedirected) {
   EXPECT_EQ(m.geometry.neighbourhoods, (std::vector<std::vector<State>>{{0}, {1}}));
 
   ModelDraft other(three_states());
-  other.keep_states({true, false, true}, false);
-  const auto to_first = std::move(other).build();
-  EXPECT_EQ(to_first.mdp.successors(1, 0).size(), 1u);
-  EXPECT_EQ(to_first.mdp.successors(1, 0)[0].target, 0);
+  other.keep_states({true, false, true}, 2);
+  const auto to_right = std::move(other).build();
+  EXPECT_EQ(to_right.mdp.successors(0, 0).size(), 1u);
+  EXPECT_EQ(to_right.mdp.successors(0, 0)[0], (Successor<double>{1, 1.0}));
+  EXPECT_EQ(to_right.mdp.successors(1, 0)[1], (Successor<double>{1, 0.75}));
 }
 
 TEST(ModelDraft, RoundsRowsByLargestRemainder) {
