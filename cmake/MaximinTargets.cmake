@@ -21,6 +21,10 @@ target_compile_options(maximin_options INTERFACE -Wall -Wextra -Wpedantic -Wshad
 if(MAXIMIN_SANITIZE)
   target_compile_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE})
+  if(MAXIMIN_SANITIZE MATCHES "address.*undefined")
+    # What these two see the address sanitizer sees as well, and without them the build takes two thirds of the time.
+    target_compile_options(maximin_options INTERFACE -fno-sanitize=null,object-size)
+  endif()
 endif()
 
 # maximin_package(NAME VERSION [argument...]): find_package, and the version remembered for who links the installed tree.
