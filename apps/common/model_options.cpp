@@ -1,9 +1,12 @@
 #include <maximin/apps/common/model_options.hpp>
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <filesystem>
 
 #include <maximin/apps/common/option_checks.hpp>
 #include <maximin/apps/common/program.hpp>
+#include <maximin/models/builtin_models.hpp>
 #include <maximin/models/files/model_file.hpp>
 
 namespace maximin::apps {
@@ -45,6 +48,43 @@ void declare_geometry(CLI::App& app, ModelOptions& options) {
       ->group(geometry_group);
 }
 
+/// The words on lines of the help, after a first line that has begun already.
+std::string wrapped(const std::vector<std::string>& words) {
+  std::string text;
+  std::size_t column = 30;
+  for (const std::string& word : words) {
+    if (!text.empty()) text += ',';
+    const bool fits = column + word.size() + 1 <= 60;
+    if (!text.empty()) text += fits ? ' ' : '\n';
+    column = fits ? column + word.size() + 2 : word.size() + 2;
+    text += word;
+  }
+  return text;
+}
+
+Model<double> load_file(const ModelOptions& options) {
+  ReadOptions reading;
+  reading.discount = options.discount;
+  reading.reward_model = options.reward_model;
+  if (options.intervals == "nominal") reading.intervals = IntervalRows::nominal;
+  return load_model<double>(options.file, reading);
+}
+
+Model<double> load_example(const ModelOptions& options) {
+  if (!options.reward_model.empty())
+    throw InputError("--reward-model: " + options.reward_model +
+                     ", but a built-in example has one alone, expected none");
+  const auto names = builtin_model_names();
+  if (std::find(names.begin(), names.end(), options.example) == names.end()) {
+    const std::string near = nearest_name(options.example, names);
+    throw InputError(fmt::format("--example: {} is unknown, expected one of {}{}", options.example,
+                                 fmt::join(names, ", "), near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+  Model<double> model = builtin_model(options.example);
+  if (options.discount) model.mdp = with_discount(model.mdp, *options.discount);
+  return model;
+}
+
 }  // namespace
 
 void declare(CLI::App& app, ModelOptions& options, ModelArgument argument) {
@@ -53,19 +93,27 @@ void declare(CLI::App& app, ModelOptions& options, ModelArgument argument) {
                  "model file: own JSON, gymnasium JSON, Cassandra\n.POMDP or .MDP, PRISM .tra, Storm .drn, .csv, .umb")
       ->type_name("FILE")
       ->group(model_group);
+  app.add_option("--example", options.example,
+                 fmt::format("a built-in model instead: {}", wrapped(builtin_model_names())))
+      ->type_name("NAME")
+      ->group(model_group);
   declare_reading(app, options);
   declare_geometry(app, options);
 }
 
 Model<double> load(const ModelOptions& options) {
-  if (options.file.empty()) throw InputError("no model given, expected a model file");
-  ReadOptions reading;
-  reading.discount = options.discount;
-  reading.reward_model = options.reward_model;
-  if (options.intervals == "nominal") reading.intervals = IntervalRows::nominal;
-  Model<double> model = load_model<double>(options.file, reading);
-  for (const std::string& line : model.notes) note(line);
+  if (!options.given()) throw InputError("no model given, expected a model file or --example NAME");
+  if (!options.file.empty() && !options.example.empty())
+    throw InputError("--example: given beside a model file, expected one of the two");
+  Model<double> model = options.example.empty() ? load_file(options) : load_example(options);
+  for (const std::string& line : model.notes) remark(line);
   return model;
+}
+
+std::string title(const Model<double>& model, const ModelOptions& options) {
+  if (!model.name.empty()) return model.name;
+  if (!options.example.empty()) return options.example;
+  return std::filesystem::path(options.file).filename().string();
 }
 
 GeometryOverrides<double> geometry_overrides(const ModelOptions& options) {
@@ -80,7 +128,7 @@ GeometryOverrides<double> geometry_overrides(const ModelOptions& options) {
 
 Perturbation<double> make_perturbation(const Model<double>& model, const ModelOptions& options) {
   if (model.geometry.kind == Kind::none && options.metric.empty()) {
-    note(
+    remark(
         fmt::format("the model says nothing of distances: hops in the transition graph are taken{}; --metric and "
                     "--eps choose otherwise",
                     options.eps ? "" : ", and eps = 1"));

@@ -39,6 +39,9 @@ void declare(CLI::App& app, ModelOptions& options, ModelArgument argument = Mode
 /// standard error. Throws InputError when neither or both are given, and as `load_model`.
 Model<double> load(const ModelOptions& options);
 
+/// What to call the model: its own name, else that of the example or the file.
+std::string title(const Model<double>& model, const ModelOptions& options);
+
 /// What the command line says of the geometry.
 GeometryOverrides<double> geometry_overrides(const ModelOptions& options);
 

@@ -27,6 +27,15 @@ void reserve_standard_streams() {
   }
 }
 
+std::vector<std::string>& remarks() {
+  static std::vector<std::string> held_back;
+  return held_back;
+}
+
+void say_remarks() {
+  for (const std::string& text : std::exchange(remarks(), {})) note(text);
+}
+
 void flush_standard_output() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
   throw OutputError(fmt::format("standard output: {}, expected it to be writable", std::strerror(errno)));
@@ -97,7 +106,12 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
     return describe_unexpected(app);
   if (error.get_name() == "RequiredError" && &selected(app) == &app && !subcommand_names(app).empty())
     return fmt::format("no command given, expected one of {}", fmt::join(subcommand_names(app), ", "));
-  return error.what();
+  const std::string what = error.what();
+  if (error.get_name() != "ArgumentMismatch") return what;
+  if (what.find("missing") != std::string::npos) return what.substr(0, what.find(':')) + ": a value is missing";
+  if (what.find("flag override") != std::string::npos)
+    return "--" + what.substr(0, what.find(' ')) + ": takes no value";
+  return what;
 }
 
 int parse_and_run(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& action) {
@@ -113,6 +127,7 @@ int parse_and_run(CLI::App& app, int argc, const char* const* argv, const std::f
     return ExitCode::bad_input;
   }
   const int code = action();
+  say_remarks();
   flush_standard_output();
   return code;
 }
@@ -127,9 +142,11 @@ int run_program(CLI::App& app, int argc, const char* const* argv, const std::fun
     complain(full_name(app), error.what());
     return ExitCode::bad_input;
   } catch (const BudgetExhausted& error) {
+    say_remarks();
     complain(full_name(app), error.what());
     return ExitCode::undetermined;
   } catch (const AssumptionFails& error) {
+    say_remarks();
     complain(full_name(app), error.what());
     return ExitCode::assumption_fails;
   } catch (const OutputError& error) {
@@ -145,6 +162,7 @@ int run_program(CLI::App& app, int argc, const char* const* argv, const std::fun
 }
 
 void print(std::string_view text) {
+  say_remarks();
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return;
   throw OutputError(fmt::format("standard output: {}, expected it to be writable", std::strerror(errno)));
 }
@@ -157,6 +175,10 @@ void complain(std::string_view program, std::string_view text) {
 
 void note(std::string_view text) {
   complain("note", text);
+}
+
+void remark(std::string text) {
+  remarks().push_back(std::move(text));
 }
 
 std::string printable(std::string_view text) {

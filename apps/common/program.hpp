@@ -41,7 +41,7 @@ class OutputError : public std::runtime_error {
 /// Every line starts with the app's name. Nothing throws out of here.
 int run_program(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& action);
 
-/// Writes to standard output. Throws OutputError when it cannot be written.
+/// Writes to standard output, after the remarks held back. Throws OutputError when it cannot be written.
 void print(std::string_view text);
 
 /// Writes one line "PROGRAM: TEXT" to standard error, with line breaks and control characters in the text made visible.
@@ -49,6 +49,10 @@ void complain(std::string_view program, std::string_view text);
 
 /// Writes one line "note: TEXT" to standard error: something that the user should know and need not act on.
 void note(std::string_view text);
+
+/// A note held back until the first result is printed, or the program ends otherwise; dropped when the input is refused
+/// after all, so that the one line about what is wrong stands alone.
+void remark(std::string text);
 
 /// The text with line breaks as spaces and other control characters as '?': what a file says must not drive a terminal.
 std::string printable(std::string_view text);

@@ -82,6 +82,10 @@ std::string number(double x) {
   return fmt::format("{:.6g}", x == 0 ? 0.0 : x);
 }
 
+std::string number(double x, double error) {
+  return number(std::abs(x) <= error ? 0 : x);
+}
+
 std::string error_number(double x) {
   if (!(x > 0) || !std::isfinite(x)) return number(x);
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);

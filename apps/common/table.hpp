@@ -41,6 +41,9 @@ class Table {
 /// A number for people: six significant digits; "inf", "-inf", "nan" as such, and never "-0".
 std::string number(double x);
 
+/// A number known to within `error`: as 0 where it may be 0, else as number(x).
+std::string number(double x, double error);
+
 /// A certified error for people: two significant digits, rounded up so that it stays true; 0 as "0".
 std::string error_number(double x);
 

@@ -1,0 +1,280 @@
+"""What maximin prints, and what it says to bad usage and bad input."""
+
+import glob
+import json
+import os
+import signal
+import subprocess
+import tempfile
+
+from cli import Golden, Refusal, check_golden, check_refusal, no_constants, options, report, run
+
+COMMANDS = ["solve", "attack", "belief", "simulate", "learn", "convert", "info", "examples"]
+
+HOPS = ("note: the model says nothing of distances: hops in the transition graph are taken, and eps = 1; "
+        "--metric and --eps choose otherwise\n")
+
+GOLDEN = [
+    Golden("help.txt", ["--help"]),
+    Golden("version.txt", ["--version"]),
+    *[Golden("help_%s.txt" % c, [c, "--help"]) for c in COMMANDS],
+    Golden("examples.txt", ["examples"]),
+    Golden("examples.json", ["examples", "--json"]),
+    Golden("solve_slippery_grid.txt", ["solve", "slippery_grid.json"]),
+    Golden("solve_one_sided.json", ["solve", "one_sided.json", "--json", "--method", "value-iteration"]),
+    Golden("solve_one_sided_robust.txt", ["solve", "one_sided.json", "--robust"]),
+    Golden("solve_one_sided_robust.json", ["solve", "one_sided.json", "--robust", "--json"]),
+    Golden("solve_cycling_robust.txt", ["solve", "cycling.json", "--robust"]),
+    Golden("solve_slippery_grid_robust.txt", ["solve", "slippery_grid.json", "--robust"]),
+    Golden("solve_no_geometry.txt", ["solve", "no_geometry.json", "--robust"], stderr=HOPS),
+    Golden("solve_example_tiger.txt", ["solve", "--example", "tiger", "--discount", "0.5"]),
+    Golden("solve_example_gridworld_first_rows.txt", ["solve", "--example", "gridworld", "--method", "value-iteration"]),
+    Golden("attack_one_sided.txt", ["attack", "one_sided.json", "--agent", "greedy"]),
+    Golden("attack_slippery_grid.txt", ["attack", "slippery_grid.json", "--agent", "greedy"]),
+    Golden("attack_slippery_grid_pessimistic.txt", ["attack", "slippery_grid.json", "--agent", "pessimistic"]),
+    Golden("attack_policy.json", ["attack", "cycling.json", "--policy", "1 0", "--json"]),
+    Golden("attack_far.txt", ["attack", "slippery_grid.json", "--eps", "2", "--norm", "l1"]),
+    Golden("belief_default.txt", ["belief"]),
+    Golden("belief_slippery_grid_random.txt", ["belief", "slippery_grid.json", "--attack", "random", "--seed", "3"]),
+    Golden("belief_slippery_grid_optimal.txt", ["belief", "slippery_grid.json", "--attack", "optimal", "--start", "(2,0)"]),
+    Golden("belief_slippery_grid.json", ["belief", "slippery_grid.json", "--steps", "4", "--start", "5", "--json"]),
+    Golden("belief_sets.txt", ["belief", "cycling.json", "--steps", "2"]),
+    Golden("simulate_slippery_grid.txt", ["simulate", "slippery_grid.json", "--agent", "greedy", "--episodes", "300"]),
+    Golden("simulate_belief.json", ["simulate", "slippery_grid.json", "--agent", "belief", "--episodes", "100", "--json"]),
+    Golden("learn_one_sided.txt", ["learn", "one_sided.json", "--episodes", "200", "--horizon", "30"]),
+    Golden("learn_belief.json", ["learn", "cycling.json", "--uncertainty", "belief", "--episodes", "20", "--horizon", "30",
+                                 "--json"]),
+    Golden("info_slippery_grid.txt", ["info", "slippery_grid.json"]),
+    Golden("info_one_sided.json", ["info", "one_sided.json", "--json"]),
+    Golden("convert_cycling.json", ["convert", "cycling.json"]),
+    Golden("convert_hops.json", ["convert", "no_geometry.json", "--metric", "hops", "--eps", "2", "--discount", "0.25"],
+           stderr="note: discount: 0.25 as asked for, instead of 0.75 in the file\n"),
+]
+
+
+def model(**changes):
+    """A small model file, valid but for the changes."""
+    m = {"format": "maximin-mdp", "version": 1, "states": 2, "actions": 1, "discount": 0.5,
+         "rewards": [[0], [1]], "transitions": [[0, 0, 1, 1], [1, 0, 1, 1]]}
+    m.update(changes)
+    return json.dumps({k: v for k, v in m.items() if v is not None})
+
+
+
+def bad(content, says, command="solve", code=2, more=()):
+    return Refusal([command, "bad.json", *more], code, says, {"bad.json": content})
+
+
+
+def usage(arguments, says, code=2):
+    return Refusal(arguments, code, says, {"good.json": model()})
+
+
+REFUSALS = [
+    # usage
+    usage([], "no command given"),
+    usage(["slove"], "did you mean solve?"),
+    usage(["--verison"], "did you mean --version?"),
+    usage(["solve", "--jsn", "good.json"], "did you mean --json?"),
+    usage(["solve", "--json=1x", "good.json"], "--json"),
+    usage(["solve"], "no model given"),
+    usage(["solve", "good.json", "another.json"], "another.json: unexpected argument"),
+    usage(["solve", "good.json", "--example", "tiger"], "expected one of the two"),
+    usage(["solve", "--example", "tigre"], "did you mean tiger?"),
+    usage(["solve", "good.json", "--eps"], "--eps: a value is missing"),
+    usage(["solve", "good.json", "--eps", "-1"], "--eps: -1, expected a finite number >= 0"),
+    usage(["solve", "good.json", "--eps", "nan"], "--eps: nan"),
+    usage(["solve", "good.json", "--eps", "inf"], "--eps: inf"),
+    usage(["solve", "good.json", "--eps", "1e999"], "--eps: 1e999"),
+    usage(["solve", "good.json", "--eps", "1,5"], "--eps: 1,5"),
+    usage(["solve", "good.json", "--eps", ""], "--eps: "),
+    usage(["solve", "good.json", "--eps", "1", "--eps", "2"], "--eps"),
+    usage(["solve", "good.json", "--discount", "1"], "--discount: 1, expected a finite number >= 0 and < 1"),
+    usage(["solve", "good.json", "--discount", "-0.1"], "--discount: -0.1"),
+    usage(["solve", "good.json", "--metric", "euclid"], "--metric: euclid, expected one of points, hops, discrete"),
+    usage(["solve", "good.json", "--norm", "l3", "--robust"], "--norm: l3, expected one of l1, l2, linf"),
+    usage(["solve", "good.json", "--norm", "l1", "--robust"], "norm"),
+    usage(["solve", "good.json", "--metric", "points", "--robust"], "points"),
+    usage(["solve", "good.json", "--method", "magic"], "--method: magic"),
+    usage(["solve", "good.json", "--max-sweeps", "0"], "--max-sweeps: 0, expected a whole number >= 1"),
+    usage(["solve", "good.json", "--max-sweeps", "1e3"], "--max-sweeps: 1e3"),
+    usage(["solve", "good.json", "--max-sweeps", "99999999999999999999"], "--max-sweeps: 99999999999999999999"),
+    usage(["solve", "good.json", "--max-sweeps", "1", "--method", "value-iteration"], "certified", 3),
+    usage(["solve", "good.json", "--graph", "no/such/folder/g.dot"], "no/such/folder/g.dot"),
+    usage(["solve", "good.json", "--graph", "good.json"], "--force"),
+    usage(["attack", "good.json", "--agent", "belief"], "--agent: belief, expected one of"),
+    usage(["attack", "good.json", "--agent", "policy"], "--policy LIST"),
+    usage(["attack", "good.json", "--metric", "discrete", "--policy", "0"], "--policy: 1 actions, expected 2"),
+    usage(["attack", "good.json", "--metric", "discrete", "--policy", "0,1"], "--policy: 1 is no action, expected 0 to 0"),
+    usage(["attack", "good.json", "--metric", "discrete", "--policy-file", "none.txt"], "none.txt"),
+    usage(["attack", "good.json", "--metric", "discrete", "--policy-file", "good.json"], "$.policy"),
+    usage(["belief", "good.json", "--metric", "discrete", "--start", "7"], "--start: 7 is no state, expected 0 to 1"),
+    usage(["belief", "good.json", "--attack", "strong"], "--attack: strong"),
+    usage(["belief", "--steps", "0"], "--steps: 0"),
+    usage(["belief", "--seed", "-1"], "--seed: -1"),
+    usage(["belief", "--attack", "optimal", "--max-positions", "3"], "belief game", 3),
+    usage(["simulate", "good.json", "--episodes", "0"], "--episodes: 0"),
+    usage(["simulate", "good.json", "--metric", "discrete", "--start", "x"], "--start: x is no state"),
+    usage(["learn", "good.json", "--exploration", "1.5"], "--exploration: 1.5"),
+    usage(["learn", "good.json", "--step-exponent", "0"], "--step-exponent: 0, expected a finite number > 0 and <= 1"),
+    usage(["convert", "good.json", "-o", "good.json"], "good.json: exists"),
+    usage(["convert", "good.json", "-o", "."], "is a folder"),
+    usage(["info", "--json"], "no model given"),
+    usage(["examples", "extra"], "extra: unexpected argument"),
+    # input
+    usage(["solve", "missing.json"], "missing.json"),
+    usage(["solve", "."], "."),
+    bad("", "bad.json"),
+    bad("{", "bad.json"),
+    bad(b"\xff\xfe\x00\x01", "bad.json"),
+    bad("[1,2,3]", "bad.json"),
+    bad(model()[:-20], "bad.json"),
+    bad(model(discount=1), "discount"),
+    bad(model(discount=-0.5), "discount"),
+    bad(model().replace("0.5", "NaN"), "bad.json"),
+    bad(model(states=10**18), "states"),
+    bad(model(states=0), "states"),
+    bad(model(actions=10**18), "actions"),
+    bad(model(transitions=[[0, 0, 1, 0.5], [1, 0, 1, 1]]), "sum to"),
+    bad(model(transitions=[[0, 0, 1, -1], [0, 0, 0, 2], [1, 0, 1, 1]]), "transitions"),
+    bad(model(transitions=[[0, 0, 1, 1], [0, 0, 1, 1], [1, 0, 1, 1]]), "transitions"),
+    bad(model(transitions=[[0, 0, 1, 1]]), "transition"),
+    bad(model(transitions=[[0, 0, 5, 1], [1, 0, 1, 1]]), "transitions"),
+    bad(model(rewards=[[0]]), "rewards"),
+    bad(model(neighbourhoods=[[0], []]), "neighbourhoods", more=["--robust"]),
+    bad(model(neighbourhoods=[[0, 1], [1]]), "neighbourhoods", more=["--robust"]),
+    bad(model(points=[[0]], eps=1), "points"),
+    bad(model(points=[[0], [1]]), "eps", more=["--robust"]),
+    bad(model(points=[[0], [1]], eps=-1), "eps", more=["--robust"]),
+]
+
+
+def check_output_failures(program):
+    """Standard output that cannot be written is an error; a reader that has had enough is none of ours."""
+    problems = []
+    with open("/dev/full", "wb") as full:
+        result = subprocess.run([program, "examples"], stdout=full, stderr=subprocess.PIPE)
+    if result.returncode != 74 or result.stderr.count(b"\n") != 1:
+        problems.append("full standard output: exit code %d, %r" % (result.returncode, result.stderr))
+    closed = subprocess.run(["sh", "-c", '"$0" examples >&-', program], stderr=subprocess.PIPE)
+    if closed.returncode != 74 or closed.stderr.count(b"\n") != 1:
+        problems.append("closed standard output: exit code %d, %r" % (closed.returncode, closed.stderr))
+    read, write = os.pipe()
+    os.close(read)
+    gone = subprocess.run([program, "examples"], stdout=write, stderr=subprocess.PIPE)
+    os.close(write)
+    if gone.returncode != -signal.SIGPIPE or gone.stderr:
+        problems.append("reader gone: exit code %d, %r" % (gone.returncode, gone.stderr))
+    return problems
+
+
+def check_convert(program):
+    """convert writes whole files, replaces them only when told, and its output is a fixed point."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        target = os.path.join(folder, "out.json")
+        first = run(program, ["convert", "slippery_grid.json", "-o", target])
+        if first.returncode != 0 or first.stdout:
+            problems.append("convert -o: exit code %d, %r" % (first.returncode, first.stdout))
+        with open(target, "rb") as f:
+            written = f.read()
+        again = run(program, ["convert", target])
+        if again.stdout != written:
+            problems.append("converting the converted file changes it")
+        if run(program, ["convert", "cycling.json", "-o", target]).returncode != 2 or open(target, "rb").read() != written:
+            problems.append("an existing file was replaced without --force")
+        if run(program, ["convert", "cycling.json", "-o", target, "--force"]).returncode != 0:
+            problems.append("--force did not replace the file")
+        if open(target, "rb").read() != run(program, ["convert", "cycling.json"]).stdout:
+            problems.append("--force left something else than the new file")
+        if os.listdir(folder) != ["out.json"]:
+            problems.append("left behind: %s" % os.listdir(folder))
+        # A file cannot outgrow the limit: the write fails halfway, and nothing may be seen of it.
+        halfway = os.path.join(folder, "halfway.json")
+        limited = run("/bin/sh", ["-c", 'ulimit -f 1; trap "" XFSZ; exec "$0" convert slippery_grid.json -o "$1"', program, halfway])
+        if limited.returncode != 2 or os.path.exists(halfway) or os.listdir(folder) != ["out.json"]:
+            problems.append("half-written file: exit code %d, left %s" % (limited.returncode, os.listdir(folder)))
+    return problems
+
+
+def check_policy_file(program):
+    """The JSON of solve is a policy file for attack, and means the same as the list."""
+    with tempfile.TemporaryDirectory() as folder:
+        solved = os.path.join(folder, "solved.json")
+        out = run(program, ["solve", "slippery_grid.json", "--json"]).stdout
+        with open(solved, "wb") as f:
+            f.write(out)
+        policy = json.loads(out)["policy"]
+        by_file = run(program, ["attack", "slippery_grid.json", "--policy-file", solved, "--json"]).stdout
+        by_list = run(program, ["attack", "slippery_grid.json", "--policy", ",".join(map(str, policy)), "--json"]).stdout
+        greedy = json.loads(run(program, ["attack", "slippery_grid.json", "--agent", "greedy", "--json"]).stdout)
+        if by_file != by_list or not by_file:
+            return ["--policy-file and --policy differ"]
+        return [] if json.loads(by_file)["attacks"] == greedy["attacks"] else ["the solved policy is not the greedy agent"]
+
+
+def check_graph(program):
+    with tempfile.TemporaryDirectory() as folder:
+        target = os.path.join(folder, "g.dot")
+        result = run(program, ["solve", "slippery_grid.json", "--graph", target, "--json"])
+        text = open(target).read() if os.path.exists(target) else ""
+        ok = result.returncode == 0 and text.startswith("digraph") and "(2,1)" in text and json.loads(result.stdout)
+        return [] if ok else ["no drawing: exit code %d, %r" % (result.returncode, text[:100])]
+
+
+def check_interrupt(program):
+    """SIGINT ends the learning with what is learned so far, as valid JSON."""
+    arguments = [program, "learn", "--example", "grid", "--episodes", "100000000", "--json"]
+    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    try:
+        process.wait(timeout=2)
+        return ["ended by itself with %d" % process.returncode]
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=120)
+    result = json.loads(out, parse_constant=no_constants)
+    ok = process.returncode == 130 and result["interrupted"] and result["episodes"] > 0
+    return [] if ok else ["exit code %d, %r" % (process.returncode, err)]
+
+
+def check_shared_model(program, path):
+    """Every real model file is read, described and solved."""
+    problems = []
+    more = ["--discount", "0.9", "--intervals", "nominal"]
+    for command in (["info"], ["solve"]):
+        result = run(program, command + [path, "--json"] + more)
+        if result.returncode != 0:
+            problems.append("%s: exit code %d, %r" % (command[0], result.returncode, result.stderr))
+        elif not json.loads(result.stdout, parse_constant=no_constants):
+            problems.append("%s: nothing printed" % command[0])
+    return problems
+
+
+def shared_models(folder):
+    suffixes = (".POMDP", ".MDP", ".json", ".tra", ".drn", ".umb", ".csv")
+    found = sorted(glob.glob(os.path.join(folder, "**", "*"), recursive=True))
+    # The .tra beside a .drn is in the dialect of Storm, whose model the .drn holds already.
+    return [f for f in found if f.endswith(suffixes) and not ("storm" in f and f.endswith(".tra"))]
+
+
+def main():
+    arguments = options()
+    program = os.path.abspath(arguments.program)
+    checks = []
+    if arguments.shared_models:
+        for path in shared_models(arguments.shared_models):
+            checks.append((path, lambda path=path: check_shared_model(program, path)))
+        report(checks)
+    for case in GOLDEN:
+        checks.append((case.name, lambda case=case: check_golden(program, case, arguments.regenerate)))
+    with tempfile.TemporaryDirectory() as folder:
+        for case in REFUSALS if not arguments.regenerate else []:
+            checks.append((" ".join(case.arguments), lambda case=case: check_refusal(program, case, folder)))
+        if not arguments.regenerate:
+            for check in (check_output_failures, check_convert, check_policy_file, check_graph, check_interrupt):
+                checks.append((check.__name__, lambda check=check: check(program)))
+        report(checks)
+
+
+if __name__ == "__main__":
+    main()
