@@ -33,6 +33,7 @@ void rank(const std::vector<TrialRecord>& records, ClaimId id, ClaimSummary& int
     const Check& check = record.found.check(id);
     count(check, into);
     if (check.verdict != Verdict::holds && check.verdict != Verdict::violated) continue;
+    if (check.verdict == Verdict::violated && into.first_violation < 0) into.first_violation = record.trial;
     into.informative += record.found.informative(id);
     const double ratio = check.tightness();
     if (into.max_trial < 0 || ratio > into.max) {
@@ -73,9 +74,16 @@ Json number(double x) {
 }
 
 Json to_json(const Claim& claim, const ClaimSummary& s) {
-  Json json{{"name", claim.name},     {"reference", claim.reference},   {"statement", claim.statement},
-            {"checked", s.checked()}, {"instances", s.instances},       {"holds", s.holds},
-            {"violated", s.violated}, {"undetermined", s.undetermined}, {"assumption_fails", s.assumption_fails}};
+  Json json{{"name", claim.name},
+            {"reference", claim.reference},
+            {"statement", claim.statement},
+            {"checked", s.checked()},
+            {"instances", s.instances},
+            {"holds", s.holds},
+            {"violated", s.violated},
+            {"first_violation", s.first_violation},
+            {"undetermined", s.undetermined},
+            {"assumption_fails", s.assumption_fails}};
   if (claim.is_bound) json["informative"] = s.informative;
   json["tightness"] = {{"median", number(s.median)}, {"p99", number(s.p99)}, {"max", number(s.max)}};
   json["tightest"] = {{"trial", s.max_trial},

@@ -17,6 +17,7 @@ namespace maximin {
 struct ClaimSummary {
   long instances = 0;  ///< inequalities looked at, all rounds and trials
   long holds = 0, violated = 0, undetermined = 0, assumption_fails = 0;  ///< trials
+  long first_violation = -1;                                             ///< the first trial that violates it
   long informative = 0;                 ///< trials on which the bound beats span(R)/(1-gamma)
   double median = 0, p99 = 0, max = 0;  ///< of Check::tightness(), over the trials checked
   long max_trial = -1;                  ///< the trial of `max`, for --replay

@@ -43,13 +43,14 @@ std::string conclusion(const CampaignSummary& s, std::uint64_t seed, bool comple
   const char* interrupted = complete ? "" : " The run was interrupted; --resume completes it.";
   switch (exit_code(s, complete)) {
     case ExitCode::violated: {
-      std::string names;
+      std::string lines;
       for (const Claim& c : claims()) {
         const ClaimSummary& cs = s.claims[static_cast<std::size_t>(c.id)];
-        if (cs.violated > 0) names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", c.name, cs.violated);
+        if (cs.violated == 0) continue;
+        lines += fmt::format("  {:<16} on {} models, first --seed {} --replay {}\n", c.name, cs.violated, seed,
+                             cs.first_violation);
       }
-      return fmt::format("VIOLATED: {} of {} models violate {}. First: --seed {} --replay {}.{}\n", s.violations,
-                         s.trials, names, seed, s.first_violation, interrupted);
+      return fmt::format("VIOLATED on {} of {} models.{}\n{}", s.violations, s.trials, interrupted, lines);
     }
     case ExitCode::undetermined:
       if (s.trials > 0 && s.vacuous()) {
@@ -65,8 +66,11 @@ std::string conclusion(const CampaignSummary& s, std::uint64_t seed, bool comple
     default:
       return fmt::format(
           "HOLDS: no violation in {} models. At most {:.3f} percent of such models violate a claim (95 percent upper "
-          "limit).\nSeen in floating point, with certified numerical error; not a proof.\n",
-          s.trials, 100 * s.violation_upper_limit());
+          "limit).\n{}Seen in floating point, with certified numerical error; not a proof.\n",
+          s.trials, 100 * s.violation_upper_limit(),
+          s.undetermined == 0
+              ? ""
+              : fmt::format("Some claim is undetermined on {} of them: a budget ran out.\n", s.undetermined));
   }
 }
 

@@ -1,0 +1,155 @@
+#include "campaign_command.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/interrupt.hpp>
+#include <maximin/apps/common/json_output.hpp>
+#include <maximin/apps/common/output_file.hpp>
+#include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/progress.hpp>
+#include <maximin/proofs_check/campaign.hpp>
+#include <maximin/proofs_check/campaign_summary.hpp>
+#include <maximin/proofs_check/report/html_report.hpp>
+#include <maximin/proofs_check/trial_file.hpp>
+#include <maximin/proofs_check/verdict_text.hpp>
+
+#include "violation.hpp"
+
+namespace maximin::verify_bound {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+ModelSource model_source(const Options& options) {
+  const Family family = family_named(options.family);
+  const FamilyOptions restrictions = family_options(options);
+  return [=](Stream& rng) {
+    FamilyMember member = draw_family_member(family, restrictions, rng);
+    return DrawnModel{std::string(family_name(member.family)), std::move(member.model)};
+  };
+}
+
+Campaign campaign(const Options& options) {
+  Campaign c;
+  c.seed = options.seed;
+  c.trials = options.trials;
+  c.threads =
+      options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  c.examination = examination_options(options);
+  return c;
+}
+
+Json header(const Options& options) {
+  return {{"format", "maximin-trials"},
+          {"version", 1},
+          {"maximin", MAXIMIN_VERSION},
+          {"configuration", configuration(options)}};
+}
+
+std::optional<TrialFile> trial_file(const Options& options) {
+  if (options.trials_out.empty()) {
+    if (options.resume) throw InputError("--resume: nothing to resume, expected --trials-out FILE beside it");
+    return std::nullopt;
+  }
+  const Json first_line = header(options);
+  return options.resume ? TrialFile::resume(options.trials_out, first_line)
+                        : TrialFile::create(options.trials_out, first_line);
+}
+
+/// All records of the campaign, those of the file first; fewer than asked for when interrupted.
+std::vector<TrialRecord> gather(const Options& options, const ModelSource& source, std::optional<TrialFile>& file) {
+  Campaign c = campaign(options);
+  std::vector<TrialRecord> records;
+  if (file) records = file->finished();
+  c.first = static_cast<long>(records.size());
+  long violations =
+      std::count_if(records.begin(), records.end(), [](const auto& r) { return r.found.any(Verdict::violated); });
+  apps::Progress progress("models", c.trials, c.first, options.quiet || options.json);
+  run_campaign(
+      c, source,
+      [&](TrialRecord&& record) {
+        if (file) file->append(record);
+        violations += record.found.any(Verdict::violated);
+        records.push_back(std::move(record));
+        progress.advance(fmt::format("{} violations", violations));
+      },
+      apps::stop_on_interrupt());
+  return records;
+}
+
+Json summary_json(const Options& options, const CampaignSummary& summary, bool complete) {
+  Json json{{"format", "maximin-campaign"},
+            {"version", 1},
+            {"maximin", MAXIMIN_VERSION},
+            {"configuration", configuration(options)},
+            {"complete", complete}};
+  json["exit_code"] = static_cast<int>(exit_code(summary, complete));
+  json["summary"] = to_json(summary);
+  return json;
+}
+
+}  // namespace
+
+int run_campaign_command(const Options& options) {
+  if (!options.save_model.empty()) throw InputError("--save-model: of which trial? expected --replay TRIAL beside it");
+  const ModelSource source = model_source(options);
+  {  // a first model at once, so that bad restrictions end the run before any file is made
+    Stream rng(options.seed, 0);
+    source(rng);
+  }
+  std::optional<TrialFile> file = trial_file(options);
+  const std::vector<TrialRecord> records = gather(options, source, file);
+  const CampaignSummary summary = summarise(records);
+  const bool complete = static_cast<long>(records.size()) == options.trials;
+
+  if (!options.report.empty())
+    apps::write_file(options.report, html_report(configuration(options), records, summary), apps::Overwrite::replace);
+  if (options.json) {
+    apps::print(apps::json_text(summary_json(options, summary, complete)));
+  } else {
+    apps::print(verdict_text(summary, examination_options(options).reading, options.seed, complete));
+  }
+  for (const Claim& c : claims()) {
+    const long trial = summary.claims[static_cast<std::size_t>(c.id)].first_violation;
+    if (trial < 0) continue;
+    Stream rng(options.seed, static_cast<std::uint64_t>(trial));
+    save_violation(options, source(rng).model, trial, c.id);
+  }
+  return static_cast<int>(exit_code(summary, complete));
+}
+
+int run_replay_command(const Options& options) {
+  if (!options.trials_out.empty() || options.resume) {
+    throw InputError("--replay: examines one trial, expected neither --trials-out nor --resume beside it");
+  }
+  const ModelSource source = model_source(options);
+  Stream rng(options.seed, static_cast<std::uint64_t>(*options.replay));
+  const DrawnModel drawn = source(rng);
+  const std::vector<TrialRecord> records{run_trial(campaign(options), source, *options.replay)};
+  const TrialRecord& record = records.front();
+  if (!options.save_model.empty()) write_model(options.save_model, drawn.model);
+  if (!options.report.empty()) {
+    apps::write_file(options.report, html_report(configuration(options), records, summarise(records)),
+                     apps::Overwrite::replace);
+  }
+  if (options.json) {
+    Json json = header(options);
+    json["format"] = "maximin-trial";
+    json["exit_code"] = static_cast<int>(exit_code(record.found));
+    json["record"] = to_json(record);
+    apps::print(apps::json_text(json));
+  } else {
+    apps::print(fmt::format("trial {} of seed {}\n{}", record.trial, options.seed,
+                            verdict_text(record, examination_options(options).reading)));
+  }
+  return static_cast<int>(exit_code(record.found));
+}
+
+}  // namespace maximin::verify_bound

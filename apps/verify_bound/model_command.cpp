@@ -1,0 +1,40 @@
+#include "model_command.hpp"
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/json_output.hpp>
+#include <maximin/apps/common/output_file.hpp>
+#include <maximin/apps/common/program.hpp>
+#include <maximin/proofs_check/campaign_summary.hpp>
+#include <maximin/proofs_check/report/html_report.hpp>
+#include <maximin/proofs_check/verdict_text.hpp>
+
+namespace maximin::verify_bound {
+
+int run_model_command(const Options& options) {
+  if (!options.trials_out.empty() || options.resume || options.replay) {
+    throw InputError("--model: one model, expected neither --trials-out, --resume nor --replay beside it");
+  }
+  const Model<double> model = apps::load(options.model);
+  const Perturbation<double> perturbation = apps::make_perturbation(model, options.model);
+  const std::string source = options.model.file.empty() ? options.model.example : options.model.file;
+  const std::vector<TrialRecord> records{{0, source, examine(model.mdp, perturbation, examination_options(options))}};
+  const TrialRecord& record = records.front();
+  nlohmann::ordered_json how = configuration(options);
+  how["model"] = source;
+  if (!options.report.empty())
+    apps::write_file(options.report, html_report(how, records, summarise(records)), apps::Overwrite::replace);
+  if (options.json) {
+    nlohmann::ordered_json json{
+        {"format", "maximin-verdict"}, {"version", 1}, {"maximin", MAXIMIN_VERSION}, {"configuration", how}};
+    json["exit_code"] = static_cast<int>(exit_code(record.found));
+    json["notes"] = model.notes;
+    json["record"] = to_json(record);
+    apps::print(apps::json_text(json));
+  } else {
+    apps::print(verdict_text(record, examination_options(options).reading));
+  }
+  return static_cast<int>(exit_code(record.found));
+}
+
+}  // namespace maximin::verify_bound

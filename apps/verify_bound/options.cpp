@@ -1,0 +1,229 @@
+#include "options.hpp"
+
+#include <charconv>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/option_checks.hpp>
+
+#include <maximin/theory/error.hpp>
+
+namespace maximin::verify_bound {
+namespace {
+
+template <class T>
+T number(std::string_view text, std::string_view option, std::string_view whole) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size()) return value;
+  throw InputError(fmt::format("{}: '{}', expected a number or LOW:HIGH, e.g. 5:40", option, whole));
+}
+
+/// "LOW:HIGH" or one number, within [least, most].
+template <class T>
+std::optional<Range<T>> range(const std::string& text, std::string_view option, T least, T most) {
+  if (text.empty()) return std::nullopt;
+  const auto colon = text.find(':');
+  const std::string_view view(text);
+  const T low = number<T>(view.substr(0, colon), option, text);
+  const T high = colon == std::string::npos ? low : number<T>(view.substr(colon + 1), option, text);
+  if (!(low <= high && low >= least && high <= most)) {
+    throw InputError(
+        fmt::format("{}: '{}', expected LOW:HIGH with {} <= LOW <= HIGH <= {}", option, text, least, most));
+  }
+  return Range<T>{low, high};
+}
+
+void declare_checks(CLI::App& program, Options& o) {
+  const std::string group = "What to check";
+  program
+      .add_option("--reading", o.reading,
+                  "R_max of the paper's claims: paper, Assumption 2 as printed,\n"
+                  "R <= R_max; or corrected, |R| <= R_max (the default)")
+      ->check(apps::one_of({"paper", "corrected"}))
+      ->type_name("WORD")
+      ->group(group);
+  program
+      .add_option("--claims", o.claims,
+                  "claims to check, separated by commas (default: all): lemma-1,\n"
+                  "lemma-1-iterates, lemma-2, lemma-3, theorem-1, A, B, C, D, E, F")
+      ->delimiter(',')
+      ->type_name("LIST")
+      ->group(group);
+  program.add_option("--tie", o.tie, "which index wins among equals: lowest (the default) or highest")
+      ->check(apps::one_of({"lowest", "highest"}))
+      ->type_name("WORD")
+      ->group(group);
+  program
+      .add_option("--max-iterations", o.max_iterations,
+                  fmt::format("rounds of pessimistic Q-iteration before its fate is\nundetermined (default: {})",
+                              o.max_iterations))
+      ->check(apps::whole_number(1, 100'000'000))
+      ->type_name("N")
+      ->group(group);
+  program
+      .add_option(
+          "--max-positions", o.max_positions,
+          fmt::format("reachable (state, belief) pairs before claim F is\nundetermined (default: {})", o.max_positions))
+      ->check(apps::whole_number(1, 100'000'000))
+      ->type_name("N")
+      ->group(group);
+}
+
+void declare_campaign(CLI::App& program, Options& o) {
+  const std::string group = "Random models (without --model or --example)";
+  std::vector<std::string> names;
+  for (const Family f : all_families()) names.emplace_back(family_name(f));
+  program.add_option("--trials", o.trials, fmt::format("models to draw (default: {})", o.trials))
+      ->check(apps::whole_number(1, 1'000'000'000))
+      ->type_name("N")
+      ->group(group);
+  program.add_option("--seed", o.seed, "trial K of a seed is always the same model (default: 1)")
+      ->type_name("N")
+      ->group(group);
+  program.add_option("--threads", o.threads, "0 takes one per core (the default); changes no result")
+      ->check(apps::whole_number(0, 1024))
+      ->type_name("N")
+      ->group(group);
+  program
+      .add_option("--family", o.family,
+                  "kind of models: informative (bounds that say something), broad,\n"
+                  "sparse, cycling (Q_n often cycles), costs (R <= 0), mixed (all of\nthem, the default)")
+      ->check(apps::one_of(names))
+      ->type_name("WORD")
+      ->group(group);
+  const auto range_option = [&](const char* name, std::string& value, const char* description) {
+    program.add_option(name, value, description)->type_name("LOW:HIGH")->group(group);
+  };
+  range_option("--states", o.states, "number of states, a range or one number");
+  range_option("--actions", o.actions, "number of actions");
+  range_option("--gamma", o.gamma, "discount");
+  program.add_option("--l-r", o.l_r, "Lipschitz constant of the rewards, met exactly")
+      ->check(apps::real_number({.low = 0}))
+      ->type_name("X")
+      ->group(group);
+  program.add_option("--l-p", o.l_p, "Lipschitz constant of the transition probabilities, met exactly")
+      ->check(apps::real_number({.low = 0}))
+      ->type_name("X")
+      ->group(group);
+  program.add_option("--dimension", o.dimension, "dimension of the points")
+      ->check(apps::whole_number(1, 16))
+      ->type_name("N")
+      ->group(group);
+  program.add_option("--successors", o.successors, "successors of a (state, action) pair; 0 is dense")
+      ->check(apps::whole_number(0, 1'000'000))
+      ->type_name("N")
+      ->group(group);
+  program.add_option("--replay", o.replay, "examine only this trial, and show it in full")
+      ->check(apps::whole_number(0))
+      ->type_name("TRIAL")
+      ->group(group);
+}
+
+void declare_output(CLI::App& program, Options& o) {
+  const std::string group = "Output";
+  program.add_flag("--json", o.json, "one JSON object on standard output, nothing else")->group(group);
+  program.add_option("--trials-out", o.trials_out, "write one JSON line per trial to this file")
+      ->type_name("FILE")
+      ->group(group);
+  program.add_flag("--resume", o.resume, "complete the file of --trials-out if an earlier run was cut\nshort")
+      ->group(group);
+  program.add_option("--report", o.report, "write a self-contained HTML page with plots")
+      ->type_name("FILE")
+      ->group(group);
+  program.add_option("--save-model", o.save_model, "with --replay: write the model of that trial")
+      ->type_name("FILE")
+      ->group(group);
+  program
+      .add_option("--violation-dir", o.violation_dir,
+                  "folder where one violating model per claim is written, shrunk\n(default: here)")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR")
+      ->group(group);
+  program.add_flag("--quiet", o.quiet, "no progress bar")->group(group);
+}
+
+}  // namespace
+
+void declare(CLI::App& program, Options& o) {
+  declare_checks(program, o);
+  declare_campaign(program, o);
+  apps::declare(program, o.model, apps::ModelArgument::option);
+  declare_output(program, o);
+}
+
+ExaminationOptions examination_options(const Options& o) {
+  ExaminationOptions e;
+  e.reading = o.reading == "paper" ? Reading::paper : Reading::corrected;
+  e.tie = o.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
+  e.max_iterations = o.max_iterations;
+  e.max_belief_positions = o.max_positions;
+  if (!o.claims.empty()) e.only.emplace();
+  for (const std::string& name : o.claims) {
+    const auto id = find_claim(name);
+    if (!id) {
+      throw InputError(
+          fmt::format("--claims: '{}' is no claim, expected lemma-1, lemma-1-iterates, lemma-2, lemma-3, theorem-1, A, "
+                      "B, C, D, E or F",
+                      name));
+    }
+    e.only->insert(*id);
+  }
+  return e;
+}
+
+FamilyOptions family_options(const Options& o) {
+  FamilyOptions f;
+  f.states = range<State>(o.states, "--states", 2, 1000);
+  f.actions = range<Action>(o.actions, "--actions", 1, 1000);
+  f.discount = range<double>(o.gamma, "--gamma", 0.0, 0.999999);
+  f.eps = o.model.eps;
+  f.l_r = o.l_r;
+  f.l_p = o.l_p;
+  f.dimension = o.dimension;
+  f.successors = o.successors;
+  if (!o.model.norm.empty()) f.norm = apps::norm_named(o.model.norm);
+  return f;
+}
+
+nlohmann::ordered_json configuration(const Options& o) {
+  const auto optional = [](const auto& x) { return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json(nullptr); };
+  return {{"reading", o.reading},
+          {"claims", o.claims},
+          {"tie", o.tie},
+          {"max_iterations", o.max_iterations},
+          {"max_positions", o.max_positions},
+          {"trials", o.trials},
+          {"seed", o.seed},
+          {"family", o.family},
+          {"states", o.states},
+          {"actions", o.actions},
+          {"gamma", o.gamma},
+          {"eps", optional(o.model.eps)},
+          {"l_r", optional(o.l_r)},
+          {"l_p", optional(o.l_p)},
+          {"norm", o.model.norm},
+          {"dimension", optional(o.dimension)},
+          {"successors", optional(o.successors)}};
+}
+
+std::string replay_options(const Options& o) {
+  std::string text = fmt::format("--seed {}", o.seed);
+  const auto add = [&](std::string_view option, const auto& value) { text += fmt::format(" {} {}", option, value); };
+  if (o.family != "mixed") add("--family", o.family);
+  if (!o.states.empty()) add("--states", o.states);
+  if (!o.actions.empty()) add("--actions", o.actions);
+  if (!o.gamma.empty()) add("--gamma", o.gamma);
+  if (o.model.eps) add("--eps", *o.model.eps);
+  if (o.l_r) add("--l-r", *o.l_r);
+  if (o.l_p) add("--l-p", *o.l_p);
+  if (!o.model.norm.empty()) add("--norm", o.model.norm);
+  if (o.dimension) add("--dimension", *o.dimension);
+  if (o.successors) add("--successors", *o.successors);
+  if (o.reading != "corrected") add("--reading", o.reading);
+  if (o.tie != "lowest") add("--tie", o.tie);
+  return text;
+}
+
+}  // namespace maximin::verify_bound

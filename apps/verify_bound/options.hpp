@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <maximin/models/model_family.hpp>
+#include <maximin/proofs_check/campaign.hpp>
+#include <maximin/proofs_check/claims.hpp>
+
+#include <maximin/apps/common/model_options.hpp>
+
+namespace maximin::verify_bound {
+
+/// Everything that can be asked of verify_bound.
+struct Options {
+  // What to check
+  std::string reading = "corrected";
+  std::vector<std::string> claims;
+  std::string tie = "lowest";
+  long max_iterations = 20'000;
+  long max_positions = 20'000;
+
+  // On random models
+  long trials = 5000;
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: one per core
+  std::string family = "mixed";
+  std::string states, actions, gamma;  ///< "LOW:HIGH" or one number; empty: as the family has it
+  std::optional<double> l_r, l_p;
+  std::optional<int> dimension;
+  std::optional<int> successors;
+  std::optional<long> replay;
+
+  // On a model file; its eps and norm restrict random models too
+  apps::ModelOptions model;
+
+  // Output
+  bool json = false;
+  std::string trials_out, report, save_model;
+  std::string violation_dir = ".";
+  bool resume = false;
+  bool quiet = false;
+};
+
+/// Declares the options on the program.
+void declare(CLI::App& program, Options& options);
+
+/// What to examine on each model. Throws InputError on an unknown claim.
+ExaminationOptions examination_options(const Options& options);
+
+/// The restrictions on the random family. Throws InputError on a range that is not one.
+FamilyOptions family_options(const Options& options);
+
+/// Everything that the results depend on, for the header of the trials file and the summary. Never the number of
+/// threads.
+nlohmann::ordered_json configuration(const Options& options);
+
+/// The options that make the same models again, for a command line that replays a trial.
+std::string replay_options(const Options& options);
+
+}  // namespace maximin::verify_bound
