@@ -48,7 +48,8 @@ class CassandraReader {
     if (preamble_.discount) in_file = read_number<Scalar>(source_, line, "discount", preamble_.discount->text);
     const Scalar discount = choose_discount(source_, options_, in_file, line, notes);
     if (preamble_.costs) notes.emplace_back("values: costs, taken as negative rewards");
-    ModelAssembly<Scalar> assembly(source_, static_cast<State>(states_), static_cast<Action>(actions_), slack());
+    ModelAssembly<Scalar> assembly(source_, options_.limits, static_cast<State>(states_), static_cast<Action>(actions_),
+                                   slack());
     for (std::size_t s = 0; s < states_; ++s) {
       for (std::size_t a = 0; a < actions_; ++a) add_row(assembly, s, a);
     }

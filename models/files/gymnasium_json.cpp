@@ -28,7 +28,8 @@ class GymnasiumReader {
     const JsonValue table = indexed(root_.member("P", "P[state][action], lists of " + std::string(entry_form)),
                                     "one member per state", states_);
     if (ends_somewhere_) ++states_;
-    ModelAssembly<Scalar> assembly(document_, to_state(states_), to_state(actions_), Scalar(1) / Scalar(1'000'000'000));
+    ModelAssembly<Scalar> assembly(document_, options_.limits, to_state(states_), to_state(actions_),
+                                   Scalar(1) / Scalar(1'000'000'000));
     std::size_t s = 0;
     for (const JsonValue actions : table) {
       std::size_t a = 0;

@@ -39,7 +39,7 @@ class MaximinJsonReader {
     read_sizes();
     std::vector<std::string> notes = read_notes();
     const Scalar discount = read_discount(notes);
-    ModelAssembly<Scalar> assembly(document_, states_, actions_, json_slack<Scalar>());
+    ModelAssembly<Scalar> assembly(document_, options_.limits, states_, actions_, json_slack<Scalar>());
     const std::size_t at = read_transitions(assembly);
     read_rewards(assembly);
     Model<Scalar> model{std::move(assembly).build(discount, at, notes), {}, {}, {}, {}, {}, {}};

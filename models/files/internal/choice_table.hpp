@@ -120,7 +120,7 @@ class ChoiceTable {
     const std::size_t actions = std::max<std::size_t>(names.size(), 1);
     require_size(source_, 0, states(), actions, options_.limits);
     const std::vector<std::size_t> choice_of = fill_actions(action_of, actions, notes);
-    ModelAssembly<Scalar> assembly(source_, static_cast<State>(states()), static_cast<Action>(actions),
+    ModelAssembly<Scalar> assembly(source_, options_.limits, static_cast<State>(states()), static_cast<Action>(actions),
                                    Scalar(Scalar(1) / Scalar(1'000'000'000)));
     for (std::size_t row = 0; row < choice_of.size(); ++row) {
       const auto s = static_cast<State>(row / actions);

@@ -98,8 +98,8 @@ template <class Scalar>
 class ModelAssembly {
  public:
   /// `slack`: rows that miss 1 by at most this are scaled, and a note says so; rows further off are an error.
-  ModelAssembly(const Source& source, State states, Action actions, Scalar slack)
-      : source_(source), states_(states), actions_(actions), slack_(std::move(slack)) {
+  ModelAssembly(const Source& source, const ReadLimits& limits, State states, Action actions, Scalar slack)
+      : source_(source), limits_(limits), states_(states), actions_(actions), slack_(std::move(slack)) {
     rewards_ = QTable<Scalar>::Constant(states, actions, Scalar(0));
   }
 
@@ -108,6 +108,9 @@ class ModelAssembly {
     if (!(probability >= Scalar(0) && probability <= Scalar(1) + slack_)) {
       source_.fail(at, fmt::format("probability {}: outside the range, expected 0 to 1",
                                    number_text(static_cast<double>(probability))));
+    }
+    if (entries_.size() >= limits_.transitions) {
+      source_.fail(at, fmt::format("more than {} transitions, expected fewer", limits_.transitions));
     }
     entries_.push_back({s, a, target, std::move(probability), at});
   }
@@ -192,6 +195,7 @@ class ModelAssembly {
   }
 
   const Source& source_;
+  const ReadLimits& limits_;
   State states_;
   Action actions_;
   Scalar slack_;

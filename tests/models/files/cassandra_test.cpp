@@ -160,6 +160,9 @@ TEST(Cassandra, WildcardsCannotCostHours) {
   const std::string text = "discount: 0.5\nvalues: reward\nstates: 40\nactions: 1\nT: * : * : * 0.025";
   EXPECT_EQ(testing::error_of([&] { read(text, options); }),
             "m.pomdp:5: wildcards and matrices write more than 1000 entries, expected fewer");
+  options = {};
+  options.limits.transitions = 1000;
+  EXPECT_EQ(testing::error_of([&] { read(text, options); }), "m.pomdp:5: more than 1000 transitions, expected fewer");
 }
 
 }  // namespace
