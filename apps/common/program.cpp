@@ -106,7 +106,7 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
     return describe_unexpected(app);
   if (error.get_name() == "RequiredError" && &selected(app) == &app && !subcommand_names(app).empty())
     return fmt::format("no command given, expected one of {}", fmt::join(subcommand_names(app), ", "));
-  const std::string what = error.what();
+  std::string what = error.what();
   if (error.get_name() != "ArgumentMismatch") return what;
   if (what.find("missing") != std::string::npos) return what.substr(0, what.find(':')) + ": a value is missing";
   if (what.find("flag override") != std::string::npos)

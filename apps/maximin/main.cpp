@@ -1,9 +1,13 @@
+#include <exception>
+
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/maximin/commands.hpp>
 
-/// maximin: solves, attacks and walks through finite models, for people (tables) and programs (--json).
-int main(int argc, char** argv) {
-  using namespace maximin::apps;
+namespace maximin::apps {
+
+namespace {
+
+int run_maximin(int argc, char** argv) {
   CLI::App app("Pessimism under adversarial state perturbation, computed exactly on finite models.", "maximin");
   app.set_version_flag("--version", "maximin " MAXIMIN_VERSION);
   app.require_subcommand(1);
@@ -25,4 +29,18 @@ int main(int argc, char** argv) {
   add_info(app, task);
   add_examples(app, task);
   return run_program(app, argc, argv, [&task] { return task(); });
+}
+
+}  // namespace
+
+}  // namespace maximin::apps
+
+/// maximin: solves, attacks and walks through finite models, for people (tables) and programs (--json).
+int main(int argc, char** argv) {
+  try {
+    return maximin::apps::run_maximin(argc, argv);
+  } catch (const std::exception& error) {
+    maximin::apps::complain("maximin", error.what());
+    return maximin::apps::ExitCode::internal_error;
+  }
 }
