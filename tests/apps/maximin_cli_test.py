@@ -253,8 +253,7 @@ def check_shared_model(program, path):
 def shared_models(folder):
     suffixes = (".POMDP", ".MDP", ".json", ".tra", ".drn", ".umb", ".csv")
     found = sorted(glob.glob(os.path.join(folder, "**", "*"), recursive=True))
-    # The .tra beside a .drn is in the dialect of Storm, whose model the .drn holds already.
-    return [f for f in found if f.endswith(suffixes) and not ("storm" in f and f.endswith(".tra"))]
+    return [f for f in found if f.endswith(suffixes)]
 
 
 def main():

@@ -1,0 +1,224 @@
+"""What verify_bound prints, refuses, writes, resumes and survives."""
+
+import glob
+import json
+import os
+import signal
+import subprocess
+import tempfile
+import time
+
+from cli import Golden, Refusal, check_golden, check_refusal, no_constants, options, report, run
+from maximin_cli_test import model, shared_models
+
+GOLDEN = [
+    Golden("verify_bound_help.txt", ["--help"]),
+    Golden("verify_bound_version.txt", ["--version"]),
+    Golden("verify_bound_one_sided.json", ["--model", "one_sided.json", "--json"]),
+    Golden("verify_bound_one_sided_paper.json", ["--model", "one_sided.json", "--reading", "paper", "--json"], code=1),
+    Golden("verify_bound_one_sided_paper.txt", ["--model", "one_sided.json", "--reading", "paper"], code=1),
+    Golden("verify_bound_cycling.txt", ["--example", "cycling"]),
+]
+
+REFUSALS = [
+    Refusal(["--bogus"], 2, "--bogus"),
+    Refusal(["--trials", "0"], 2, "--trials"),
+    Refusal(["--trials", "1e3"], 2, "--trials"),
+    Refusal(["--reading", "printed"], 2, "paper"),
+    Refusal(["--claims", "theorem-2"], 2, "theorem-1"),
+    Refusal(["--family", "smooth"], 2, "informative"),
+    Refusal(["--states", "9:3"], 2, "LOW:HIGH"),
+    Refusal(["--states", "many"], 2, "LOW:HIGH"),
+    Refusal(["--gamma", "0.5:1"], 2, "--gamma"),
+    Refusal(["--gamma", "nan"], 2, "--gamma"),
+    Refusal(["--eps", "-1"], 2, "--eps"),
+    Refusal(["--resume"], 2, "--trials-out"),
+    Refusal(["--save-model", "m.json"], 2, "--replay"),
+    Refusal(["--replay", "1", "--trials-out", "t.jsonl"], 2, "--trials-out"),
+    Refusal(["--trials", "1", "--trials-out", "no-such-folder/t.jsonl"], 2, "no-such-folder/t.jsonl"),
+    Refusal(["--trials", "1", "--violation-dir", "no-such-folder"], 2, "no-such-folder"),
+    Refusal(["--model", "absent.json"], 2, "absent.json"),
+    Refusal(["--model", "m.json", "--replay", "1"], 2, "--replay", {"m.json": model()}),
+    Refusal(["--model", "m.json", "--example", "grid"], 2, "--example", {"m.json": model()}),
+    Refusal(["--model", "m.json"], 2, "m.json", {"m.json": model(discount=1)}),
+    Refusal(["--model", "m.json", "--norm", "l1"], 2, "norm", {"m.json": model()}),
+    Refusal(["--trials", "2", "--trials-out", "other.jsonl", "--resume"], 2, "other.jsonl:1", {"other.jsonl": "{}\n"}),
+    Refusal(["--trials", "2", "--trials-out", "torn.jsonl", "--resume"], 2, "torn.jsonl:1", {"torn.jsonl": "not JSON\n"}),
+    Refusal(["--trials", "2", "--trials-out", "old.jsonl"], 2, "--resume", {"old.jsonl": "kept"}),
+]
+
+TRIALS = "120"
+
+
+def campaign(program, folder, *more):
+    return run(program, ["--trials", TRIALS, "--quiet", *more], cwd=folder)
+
+
+def read(folder, name):
+    with open(os.path.join(folder, name), "rb") as f:
+        return f.read()
+
+
+def check_default_family(program):
+    """Informative bounds, cycles, no violation; one JSON object on standard output, nothing on standard error."""
+    with tempfile.TemporaryDirectory() as folder:
+        result = run(program, ["--trials", "400", "--json"], cwd=folder)
+        summary = json.loads(result.stdout, parse_constant=no_constants)["summary"]
+        theorem = next(c for c in summary["claims"] if c["name"] == "theorem-1")
+        problems = []
+        if result.returncode != 0 or result.stderr:
+            problems.append("exit code %d, %r" % (result.returncode, result.stderr))
+        if summary["violations"] != 0 or summary["fates"]["cycles"] == 0 or theorem["informative"] * 3 < 400:
+            problems.append("not what the default campaign promises: %s" % summary)
+        return problems
+
+
+def check_threads(program):
+    """The same bytes on 1, 2 and 4 threads."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = {}
+        for threads in ("1", "2", "4"):
+            name = "t%s.jsonl" % threads
+            out[threads] = campaign(program, folder, "--threads", threads, "--trials-out", name, "--json").stdout
+            out[threads] += read(folder, name)
+        return [] if out["1"] == out["2"] == out["4"] and out["1"] else ["the bytes depend on the threads"]
+
+
+def whole_run(program, folder):
+    out = campaign(program, folder, "--trials-out", "whole.jsonl", "--json").stdout
+    return out, read(folder, "whole.jsonl")
+
+
+def check_resume(program):
+    """A file cut anywhere is completed to the same bytes, and so is the summary."""
+    with tempfile.TemporaryDirectory() as folder:
+        out, whole = whole_run(program, folder)
+        problems = []
+        for keep in (0, 1, len(whole) // 3, len(whole) // 2 + 7, len(whole) - 1, len(whole)):
+            with open(os.path.join(folder, "cut.jsonl"), "wb") as f:
+                f.write(whole[:keep])
+            resumed = campaign(program, folder, "--trials-out", "cut.jsonl", "--resume", "--json")
+            if resumed.stdout != out or read(folder, "cut.jsonl") != whole:
+                problems.append("cut to %d of %d bytes: differs, %r" % (keep, len(whole), resumed.stderr))
+        return problems
+
+
+def check_kill(program, how, code):
+    """A run that is stopped leaves only whole lines, or a last one cut short; resumed, it ends as if never stopped."""
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = ["--trials", "1000", "--family", "broad", "--quiet", "--json", "--threads", "2"]
+        path = os.path.join(folder, "killed.jsonl")
+        process = subprocess.Popen([program, *arguments, "--trials-out", path], cwd=folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        deadline = time.time() + 60
+        while (not os.path.exists(path) or os.path.getsize(path) < 20000) and time.time() < deadline:
+            time.sleep(0.01)
+        process.send_signal(how)
+        out, _ = process.communicate(timeout=120)
+        if process.returncode != code:
+            return ["exit code %d, expected %d" % (process.returncode, code)]
+        if how == signal.SIGINT and json.loads(out, parse_constant=no_constants)["complete"]:
+            return ["an interrupted run calls itself complete"]
+        before = read(folder, "killed.jsonl")
+        finished = before[: before.rfind(b"\n") + 1]
+        resumed = run(program, [*arguments, "--trials-out", path, "--resume"], cwd=folder)
+        fresh = run(program, [*arguments, "--trials-out", "fresh.jsonl"], cwd=folder)
+        after = read(folder, "killed.jsonl")
+        ok = after.startswith(finished) and after == read(folder, "fresh.jsonl") and resumed.stdout == fresh.stdout
+        return [] if ok and finished.count(b"\n") > 2 else ["the resumed run differs from one that was not stopped"]
+
+
+def check_violation(program):
+    """Theorem 1 as printed fails on costs; the violating model is shrunk, written, and violates again when read."""
+    with tempfile.TemporaryDirectory() as folder:
+        result = run(program, ["--family", "costs", "--reading", "paper", "--trials", "60", "--claims", "theorem-1",
+                               "--quiet"], cwd=folder)
+        files = glob.glob(os.path.join(folder, "violation-*-theorem-1.json"))
+        if result.returncode != 1 or len(files) != 1:
+            return ["exit code %d and files %s, expected 1 and one file" % (result.returncode, files)]
+        with open(files[0]) as f:
+            states = json.load(f)["states"]
+        again = run(program, ["--model", files[0], "--reading", "paper", "--claims", "theorem-1"])
+        corrected = run(program, ["--model", files[0]])
+        ok = states <= 4 and again.returncode == 1 and corrected.returncode == 0
+        return [] if ok else ["%d states, exit codes %d and %d" % (states, again.returncode, corrected.returncode)]
+
+
+def check_replay(program):
+    """A trial by itself gives the record of the campaign; its model, saved, gives the same verdict."""
+    with tempfile.TemporaryDirectory() as folder:
+        campaign(program, folder, "--trials-out", "t.jsonl")
+        line = json.loads(read(folder, "t.jsonl").split(b"\n")[1 + 17])
+        one = run(program, ["--replay", "17", "--json", "--save-model", "m.json"], cwd=folder)
+        saved = run(program, ["--model", "m.json", "--json"], cwd=folder)
+        problems = []
+        if json.loads(one.stdout)["record"] != line:
+            problems.append("the replayed record differs from the campaign's")
+        if json.loads(saved.stdout)["record"]["claims"] != line["claims"]:
+            problems.append("the saved model gives another verdict")
+        return problems
+
+
+def check_vacuous(program):
+    """A campaign whose bounds all say nothing does not say that anything holds."""
+    result = run(program, ["--trials", "30", "--family", "cycling", "--claims", "theorem-1", "--quiet"])
+    says = b"UNDETERMINED" in result.stdout and b"vacuous" in result.stdout
+    return [] if result.returncode == 3 and says else ["exit code %d, %r" % (result.returncode, result.stdout)]
+
+
+def check_assumption(program):
+    """Two states at one point that differ: no Lipschitz constant exists, and the verdict names the assumption."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "m.json"), "w") as f:
+            f.write(model(points=[[0], [0]], norm="l1", eps=1))
+        result = run(program, ["--model", "m.json"], cwd=folder)
+        ok = result.returncode == 4 and b"Assumption 1" in result.stdout
+        return [] if ok else ["exit code %d, %r" % (result.returncode, result.stdout)]
+
+
+def check_report(program):
+    with tempfile.TemporaryDirectory() as folder:
+        campaign(program, folder, "--report", "r.html")
+        page = read(folder, "r.html").decode()
+        ok = page.startswith("<!DOCTYPE html>") and page.rstrip().endswith("</html>") and "<svg" in page
+        return [] if ok and "http://" not in page.replace("http://www.w3.org/", "") else ["not a self-contained page"]
+
+
+def check_shared_model(program, path):
+    """Every real model is verified: each claim holds or a budget ran out, and none is violated."""
+    result = run(program, ["--model", path, "--discount", "0.9", "--intervals", "nominal", "--json"])
+    if result.returncode not in (0, 3):
+        return ["exit code %d, %r" % (result.returncode, result.stderr)]
+    claims = json.loads(result.stdout, parse_constant=no_constants)["record"]["claims"]
+    undetermined = [n for n, c in claims.items() if c["verdict"] != "holds"]
+    return [] if set(undetermined) <= {"F"} else ["undetermined: %s" % undetermined]
+
+
+CHECKS = [check_default_family, check_threads, check_resume, check_violation, check_replay, check_vacuous,
+          check_assumption, check_report]
+
+
+def main():
+    arguments = options()
+    program = os.path.abspath(arguments.program)
+    checks = []
+    if arguments.shared_models:
+        for path in shared_models(arguments.shared_models):
+            checks.append((path, lambda path=path: check_shared_model(program, path)))
+        report(checks)
+    for case in GOLDEN:
+        checks.append((case.name, lambda case=case: check_golden(program, case, arguments.regenerate)))
+    if arguments.regenerate:
+        report(checks)
+    with tempfile.TemporaryDirectory() as folder:
+        for case in REFUSALS:
+            checks.append((" ".join(case.arguments), lambda case=case: check_refusal(program, case, folder)))
+        for check in CHECKS:
+            checks.append((check.__name__, lambda check=check: check(program)))
+        checks.append(("SIGKILL", lambda: check_kill(program, signal.SIGKILL, -signal.SIGKILL)))
+        checks.append(("SIGINT", lambda: check_kill(program, signal.SIGINT, 3)))
+        report(checks)
+
+
+if __name__ == "__main__":
+    main()
