@@ -20,8 +20,11 @@ class Reorder {
   void take(TrialRecord&& record) {
     const std::lock_guard lock(mutex_);
     waiting_.emplace(record.trial, std::move(record));
-    for (auto i = waiting_.begin(); i != waiting_.end() && i->first == next_; i = waiting_.erase(i), ++next_) {
-      sink_(std::move(i->second));
+    while (!waiting_.empty() && waiting_.begin()->first == next_) {
+      // Taken out before the sink sees it: if the sink throws, no other thread may hand it over again.
+      auto ready = waiting_.extract(waiting_.begin());
+      sink_(std::move(ready.mapped()));
+      ++next_;
     }
   }
 

@@ -28,10 +28,11 @@ struct Campaign {
   long trials = 2000;
   long first = 0;  ///< trials before it are known already (a resumed run)
   int threads = 1;
-  ExaminationOptions examination;
+  ExaminationOptions examination = {};
 };
 
-/// Takes the records in order of the trials, from one thread at a time. May throw; the campaign then ends.
+/// Takes the records in order of the trials, from one thread at a time. May throw; the campaign then ends, and the sink
+/// is not called again.
 using RecordSink = std::function<void(TrialRecord&&)>;
 
 /// Draws and examines trial k by itself. A solver that runs out of its budget makes every claim undetermined.

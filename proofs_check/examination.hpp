@@ -44,9 +44,9 @@ struct Check {
 
 struct ExaminationOptions {
   Reading reading = Reading::corrected;
-  long max_iterations = 20'000;        ///< of pessimistic Q-iteration
-  long max_belief_positions = 20'000;  ///< for claim F; more make it undetermined
-  std::optional<std::set<ClaimId>> only;
+  long max_iterations = 20'000;                ///< of pessimistic Q-iteration
+  long max_belief_positions = 20'000;          ///< for claim F; more make it undetermined
+  std::optional<std::set<ClaimId>> only = {};  ///< absent: all
   TieBreak tie = TieBreak::lowest_index;
 
   bool wants(ClaimId id) const { return !only || only->contains(id); }

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -84,6 +85,9 @@ TrialFile TrialFile::create(const fs::path& path, const Json& header) {
 
 TrialFile TrialFile::resume(const fs::path& path, const Json& header) {
   if (!fs::exists(path)) return create(path, header);
+  if (!fs::is_regular_file(path)) {
+    throw InputError(fmt::format("{}: not a plain file, expected the file of an interrupted run", path.string()));
+  }
   const Lines lines = complete_lines(path);
   std::vector<TrialRecord> finished;
   if (!lines.text.empty()) {
@@ -96,8 +100,13 @@ TrialFile TrialFile::resume(const fs::path& path, const Json& header) {
       finished.push_back(parse_record(path, i + 1, lines.text[i], static_cast<long>(i) - 1));
     }
   }
-  fs::resize_file(path, lines.bytes);
   TrialFile file(path, "a");
+  std::error_code failure;
+  fs::resize_file(path, lines.bytes, failure);
+  if (failure) {
+    throw InputError(fmt::format("{}: {}, expected a file that can be cut back to its last whole line", path.string(),
+                                 failure.message()));
+  }
   if (lines.text.empty()) file.write_line(header);
   file.finished_ = std::move(finished);
   return file;

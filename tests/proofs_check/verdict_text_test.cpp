@@ -1,0 +1,130 @@
+#include <maximin/proofs_check/verdict_text.hpp>
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "../theory/small_models.hpp"
+#include "small_records.hpp"
+#include "trap_model.hpp"
+
+namespace maximin {
+namespace {
+
+/// Whether the text has the line, from its start to its end.
+testing::AssertionResult has_line(const std::string& text, const std::string& line) {
+  if (('\n' + text + '\n').find('\n' + line + '\n') != std::string::npos) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "no line\n" << line << "\nin\n" << text;
+}
+
+testing::AssertionResult has(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "no \"" << part << "\" in\n" << text;
+}
+
+TrialRecord of_e(long trial, double left, double right, double trivial) {
+  TrialRecord record{trial, "made up", {}};
+  record.found.check(ClaimId::e_test_time).observe(left, right, 0);
+  record.found.trivial = trivial;
+  record.found.fate = Fate::settled;
+  return record;
+}
+
+TEST(ExitCode, OfACampaign) {
+  const auto holds = summarise({of_e(0, 1, 2, 10)}), vacuous = summarise({of_e(0, 1, 2, 1)});
+  const auto violated = summarise({of_e(0, 3, 2, 1)});
+  EXPECT_EQ(exit_code(holds, true), ExitCode::holds);
+  EXPECT_EQ(exit_code(holds, false), ExitCode::undetermined) << "interrupted";
+  EXPECT_EQ(exit_code(vacuous, true), ExitCode::undetermined) << "nothing was verified";
+  EXPECT_EQ(exit_code(summarise({}), true), ExitCode::undetermined);
+  EXPECT_EQ(exit_code(violated, true), ExitCode::violated) << "even where the bound is vacuous";
+  EXPECT_EQ(exit_code(violated, false), ExitCode::violated) << "even when interrupted";
+  auto assumption = of_e(1, 1, 2, 10);
+  assumption.found.failed_assumption = "Assumption 1";
+  EXPECT_EQ(exit_code(summarise({of_e(0, 1, 2, 10), assumption}), true), ExitCode::assumption_fails);
+  EXPECT_EQ(static_cast<int>(ExitCode::holds), 0);
+  EXPECT_EQ(static_cast<int>(ExitCode::violated), 1);
+  EXPECT_EQ(static_cast<int>(ExitCode::bad_input), 2);
+  EXPECT_EQ(static_cast<int>(ExitCode::undetermined), 3);
+  EXPECT_EQ(static_cast<int>(ExitCode::assumption_fails), 4);
+}
+
+TEST(ExitCode, OfOneModel) {
+  auto record = of_e(0, 1, 2, 1);
+  EXPECT_EQ(exit_code(record.found), ExitCode::holds) << "a vacuous bound that holds, holds";
+  record.found.check(ClaimId::f_belief).verdict = Verdict::undetermined;
+  EXPECT_EQ(exit_code(record.found), ExitCode::undetermined);
+  record.found.check(ClaimId::lemma_1).verdict = Verdict::violated;
+  EXPECT_EQ(exit_code(record.found), ExitCode::violated);
+}
+
+TEST(VerdictText, ACampaignThatHolds) {
+  std::vector<TrialRecord> records;
+  for (long k = 0; k < 2000; ++k) records.push_back(of_e(k, 1, k == 40 ? 2 : 4, k < 500 ? 10 : 1));
+  const std::string text = verdict_text(summarise(records), Reading::corrected, 7, true);
+  EXPECT_TRUE(has_line(text, "2000 models, seed 7, reading corrected: R_max = max |R|"));
+  EXPECT_TRUE(has_line(text,
+                       "  E                pessimism at test time              2000        0        0       25.0%"
+                       "    0.2500   0.2500   0.5000       40"));
+  EXPECT_TRUE(has_line(text, "At least one bound informative on 500 (25.0%)"));
+  EXPECT_TRUE(has(text,
+                  "HOLDS: no violation in 2000 models. At most 0.150 percent of such models violate a claim (95 "
+                  "percent upper limit)."));
+  EXPECT_TRUE(has_line(text, "Seen in floating point, with certified numerical error; not a proof."));
+  EXPECT_FALSE(has(text, "Theorem 1")) << "what was not asked is not listed";
+}
+
+TEST(VerdictText, ACampaignOfVacuousBoundsSaysThatItVerifiesNothing) {
+  const std::string text = verdict_text(summarise({of_e(0, 1, 2, 1), of_e(1, 1, 2, 2)}), Reading::corrected, 1, true);
+  EXPECT_TRUE(has(text, "UNDETERMINED: every bound was vacuous on every model"));
+  EXPECT_TRUE(has(text, "this campaign verifies nothing"));
+  EXPECT_FALSE(has(text, "HOLDS"));
+}
+
+TEST(VerdictText, AViolatedCampaignNamesTheClaimAndTheTrialToReplay) {
+  const auto summary = summarise({of_e(0, 1, 2, 10), of_e(1, 3, 2, 10)});
+  const std::string text = verdict_text(summary, Reading::paper, 9, true);
+  EXPECT_TRUE(has_line(text, "2 models, seed 9, reading as the paper prints it: R_max = max(0, max R)"));
+  EXPECT_TRUE(has(text, "VIOLATED"));
+  EXPECT_TRUE(has(text, "--seed 9 --replay 1"));
+  EXPECT_FALSE(has(text, "HOLDS"));
+}
+
+TEST(VerdictText, AnInterruptedCampaignSaysHowToGoOn) {
+  const std::string text = verdict_text(summarise({of_e(0, 1, 2, 10)}), Reading::corrected, 1, false);
+  EXPECT_TRUE(has(text, "UNDETERMINED: 1 models and no violation. The run was interrupted; --resume completes it."));
+}
+
+TEST(VerdictText, OneModelWithItsWitnesses) {
+  const TrialRecord record{0, "the one-sided model",
+                           examine(one_sided<double>(), one_sided_balls<double>(), {.reading = Reading::paper})};
+  const std::string text = verdict_text(record, Reading::paper);
+  EXPECT_TRUE(has_line(text, "the one-sided model: 3 states, 2 actions, gamma 0.5, eps 1, largest ball 2 states"));
+  EXPECT_TRUE(has_line(text, "  l_r            1   attained by states 0 and 1, action 0"));
+  EXPECT_TRUE(has_line(text, "  l_p            1   attained by states 0 and 1, action 0, successor 0"));
+  EXPECT_TRUE(has_line(text, "  span(R)        20   (R from -20 to 0)"));
+  EXPECT_TRUE(has(text, "  theorem-1        Theorem 1                        violated             10 <= 6   "));
+  EXPECT_TRUE(has(text, "VIOLATED: a claim above fails on this model."));
+}
+
+TEST(VerdictText, OneModelThatHolds) {
+  const TrialRecord record{0, "the trap", examine(trap(), trap_balls())};
+  const std::string text = verdict_text(record, Reading::corrected);
+  EXPECT_TRUE(has_line(text, "  l_p            0"));
+  EXPECT_TRUE(has(text, "  E                pessimism at test time           holds             0.625 <= 0.666667"));
+  EXPECT_TRUE(has(text, "HOLDS on this model, in floating point with certified error."));
+}
+
+TEST(VerdictText, OneModelThatFailsAnAssumption) {
+  FiniteMdpBuilder<double> b(2, 1, 0.5);
+  b.transition(0, 0, 0, 1).transition(1, 0, 1, 1).reward(1, 0, 1);
+  const TrialRecord record{0, "twins", examine(std::move(b).build(), on_line<double>({1, 1}, 1))};
+  const std::string text = verdict_text(record, Reading::corrected);
+  EXPECT_TRUE(has_line(text, "  l_r            infinite: states 0 and 1 at distance 0 differ"));
+  EXPECT_TRUE(has_line(text,
+                       "ASSUMPTION FAILS: Assumption 1: states 0 and 1 are at distance 0 but their rewards for "
+                       "action 0 differ, so no Lipschitz constant exists"));
+}
+
+}  // namespace
+}  // namespace maximin
