@@ -18,6 +18,7 @@ using Exact = boost::multiprecision::number<boost::multiprecision::cpp_rational_
 static_assert(is_exact_v<Exact>);
 
 const Exact third = Exact(1) / 3;
+const Exact tiny = Exact(1) / Exact(boost::multiprecision::pow(boost::multiprecision::cpp_int(10), 100));
 
 TEST(ExactScalar, RowsSumToOneExactly) {
   FiniteMdpBuilder<Exact> thirds(3, 1, third);
@@ -25,7 +26,6 @@ TEST(ExactScalar, RowsSumToOneExactly) {
     for (State t = 0; t < 3; ++t) thirds.transition(s, 0, t, third);
   }
   EXPECT_NO_THROW(std::move(thirds).build());
-  const Exact tiny = 1 / boost::multiprecision::pow(boost::multiprecision::cpp_int(10), 100);
   FiniteMdpBuilder<Exact> off(1, 1, third);
   off.transition(0, 0, 0, 1 - tiny);
   EXPECT_EQ(complaint([&] { std::move(off).build(); }),
@@ -34,7 +34,6 @@ TEST(ExactScalar, RowsSumToOneExactly) {
 
 TEST(ExactScalar, BallsAreClosedExactly) {
   const Exact tenth = Exact(1) / 10;
-  const Exact tiny = 1 / boost::multiprecision::pow(boost::multiprecision::cpp_int(10), 100);
   EXPECT_TRUE(on_line<Exact>({3 * tenth, 2 * tenth}, tenth).contains(0, 1));
   EXPECT_FALSE(on_line<Exact>({3 * tenth + tiny, 2 * tenth}, tenth).contains(0, 1));
   EXPECT_EQ(on_line<Exact>({3 * tenth, 2 * tenth}, tenth).radius(), tenth);
@@ -74,7 +73,7 @@ TEST(ExactScalar, OneSidedModelHasGapTenAndPrintedBoundSix) {
   for (State s = 0; s < 3; ++s) {
     for (Action a = 0; a < 2; ++a) gap = std::max(gap, Exact(best(s, a) - q(s, a)));
   }
-  const Exact left_over = Exact(80) / boost::multiprecision::pow(boost::multiprecision::cpp_int(2), 40);
+  const Exact left_over = Exact(80) / Exact(boost::multiprecision::pow(boost::multiprecision::cpp_int(2), 40));
   EXPECT_LE(gap, 10 + left_over);
   EXPECT_GE(gap, 10 - left_over);
 }
