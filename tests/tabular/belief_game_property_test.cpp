@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
@@ -116,6 +118,27 @@ RC_GTEST_PROP(BeliefGame, AgreesWithItsRulesPlayedOut, (const Model<double>& mod
     RC_ASSERT(std::abs(game.v[s] - rules.attacked(s, everything, horizon)) <= left_over + game.error);
   }
   RC_TAG(game.positions > mdp.states() ? "several beliefs per state" : "one");
+}
+
+/// What is reported of the positions is what they say themselves, each of them sound.
+RC_GTEST_PROP(BeliefGame, ReachAndSizeAreThoseOfItsPositions, (const Model<double>& model, std::uint64_t seed)) {
+  Stream rng(seed);
+  const auto balls = make_perturbation(model);
+  const auto game = solve_belief_game(model.mdp, balls, maximin_or_whim(model.mdp, rng), {.keep_positions = true});
+  double reach = 0, members = 0;
+  std::set<Belief> beliefs;
+  for (const auto& [position, value] : game.w) {
+    const auto& [truth, belief] = position;
+    RC_ASSERT(std::binary_search(belief.begin(), belief.end(), truth));
+    for (const State m : belief) reach = std::max(reach, balls.metric().distance(truth, m));
+    members += static_cast<double>(belief.size());
+    beliefs.insert(belief);
+  }
+  const auto positions = static_cast<double>(game.w.size());
+  RC_ASSERT(game.positions == static_cast<long>(game.w.size()));
+  RC_ASSERT(game.beliefs == static_cast<long>(beliefs.size()));
+  RC_ASSERT(game.reach == reach);
+  RC_ASSERT(std::abs(game.mean_size - members / positions) <= 1e-12 * game.mean_size);
 }
 
 /// V* belongs to an agent that sees the truth and meets no attacker.
