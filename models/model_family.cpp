@@ -74,22 +74,22 @@ PairwiseDistances bring_within_reach(Metric<double>::Points& points, Norm norm, 
 
 /// In units where eps = 1 and l_r = 1, Theorem 1 as printed is below the trivial bound iff
 ///
-///     c (1 + l_p |S| R_max/(1-gamma)) < span,   c = 2 gamma (1+gamma)/(1-gamma).
+///     c (1 + l_p |S| R_max/(1-gamma)) < gamma span,   c = 2 gamma (1+gamma)/(1-gamma).
 ///
-/// The model aims at c (...) = u span with a random u < 1: a share v of it for rewards, which gives the span and hence
-/// how wide the points must be spread, the rest for the kernel, which gives l_p. The points come in groups as small as
-/// a ball, so that balls hold several states; the actions' rewards stay within about a ball's worth of one another, and
-/// mostly where an action leads does not depend on it, so that the best action changes within a ball.
+/// The model aims at c (...) = u gamma span with a random u < 1: a share v of it for rewards, which gives the span and
+/// hence how wide the points must be spread, the rest for the kernel, which gives l_p. The points come in groups as
+/// small as a ball, so that balls hold several states; the actions' rewards stay within about a ball's worth of one
+/// another, and mostly where an action leads does not depend on it, so that the best action changes within a ball.
 Model<double> draw_informative(const FamilyOptions& o, Stream& rng) {
   LipschitzMdpOptions lipschitz = draw_sizes(o, {5, 40}, {0.2, 0.8}, rng);
   const double gamma = lipschitz.discount;
   const double c = std::max(0.5, 2 * gamma * (1 + gamma) / (1 - gamma));
   const double u = rng.uniform(0.2, 0.95), v = rng.uniform(0.3, 1);
-  const double span = std::max(2.0, c / (u * v));
+  const double span = std::max(2.0, c / (gamma * u * v));
   lipschitz.action_gap = rng.uniform(0.1, 1.5);
   lipschitz.same_common_row = rng.chance(0.75);
   lipschitz.successors = o.successors.value_or(pick({0, 0, 2, 3, 5}, rng));
-  const double l_p = u * (1 - v) * (1 - gamma) / (c * lipschitz.states);
+  const double l_p = gamma * u * (1 - v) * (1 - gamma) / (c * lipschitz.states);
 
   const double group_side = side_of_unit_diameter(lipschitz.norm, lipschitz.dimension) * rng.uniform(0.7, 1.2);
   const double side = std::max(4.0, span * rng.uniform(1.5, 4));

@@ -56,6 +56,7 @@ void count(const TrialRecord& record, CampaignSummary& s) {
     if (s.violations++ == 0) s.first_violation = record.trial;
   }
   s.undetermined += e.any(Verdict::undetermined);
+  s.decided += !e.any(Verdict::undetermined) && !e.any(Verdict::assumption_fails);
   s.assumption_failures += !e.failed_assumption.empty();
   const auto& all = claims();
   s.any_informative +=
@@ -97,9 +98,15 @@ Json to_json(const Claim& claim, const ClaimSummary& s) {
 }  // namespace
 
 double CampaignSummary::violation_upper_limit() const {
-  if (trials == 0 || violations >= trials) return 1;
-  return boost::math::binomial_distribution<>::find_upper_bound_on_p(static_cast<double>(trials),
+  const long seen = std::max(decided, violations);  // a violation decides a model, whatever else is open
+  if (seen == 0 || violations >= seen) return 1;
+  return boost::math::binomial_distribution<>::find_upper_bound_on_p(static_cast<double>(seen),
                                                                      static_cast<double>(violations), 0.05);
+}
+
+bool CampaignSummary::some_claim_never_decided() const {
+  return std::any_of(claims.begin(), claims.end(),
+                     [](const ClaimSummary& c) { return c.checked() == 0 && c.undetermined > 0; });
 }
 
 CampaignSummary summarise(const std::vector<TrialRecord>& records) {
@@ -118,6 +125,7 @@ Json to_json(const CampaignSummary& s) {
       {"first_violation", s.first_violation},
       {"violation_upper_limit_95", s.violation_upper_limit()},
       {"undetermined", s.undetermined},
+      {"decided", s.decided},
       {"assumption_failures", s.assumption_failures},
       {"any_bound_informative", s.any_informative},
       {"vacuous", s.vacuous()},

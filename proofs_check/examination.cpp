@@ -15,34 +15,6 @@
 
 namespace maximin {
 
-namespace {
-
-double certain_ratio(double left, double right, double slack) {
-  constexpr double violated = std::numeric_limits<double>::infinity();
-  if (!std::isfinite(left) || !std::isfinite(right) || !std::isfinite(slack)) return violated;
-  const double certain = left - slack;
-  if (certain <= 0) return right + slack >= left ? 0 : violated;
-  return right > 0 ? certain / right : violated;
-}
-
-}  // namespace
-
-void Check::observe(double l, double r, double s, long round) {
-  const double ratio = certain_ratio(l, r, s);
-  if (instances++ == 0 || ratio > tightness()) {
-    left = l;
-    right = r;
-    slack = s;
-    n = round;
-  }
-  least_right = std::min(least_right, r);
-  if (verdict != Verdict::violated) verdict = ratio <= 1 ? Verdict::holds : Verdict::violated;
-}
-
-double Check::tightness() const {
-  return certain_ratio(left, right, slack);
-}
-
 bool Examination::any(Verdict verdict) const {
   return std::any_of(checks.begin(), checks.end(), [&](const Check& c) { return c.verdict == verdict; });
 }
@@ -54,10 +26,22 @@ bool Examination::informative(ClaimId id) const {
 
 namespace {
 
+using Table = QTable<double>;
+
 /// Relative rounding of a bound computed from exact constants by the few operations of theory/bounds.hpp.
 constexpr double formula_rounding = 1e-12;
 
-/// One model, step by step. Each method checks the claims it is named after.
+/// A slack above this share of the trivial bound decides nothing.
+constexpr double bluntest_slack = 1e-3;
+
+/// Where x - y is largest.
+Place place_of_largest(const Table& x, const Table& y, double& difference) {
+  Eigen::Index s = 0, a = 0;
+  difference = (x - y).maxCoeff(&s, &a);
+  return {static_cast<State>(s), -1, static_cast<Action>(a)};
+}
+
+/// One model, claim by claim: each claim of the theory is the method of its name.
 class Examiner {
  public:
   Examiner(const FiniteMdp<double>& mdp, const Perturbation<double>& perturbation, const ExaminationOptions& options)
@@ -74,195 +58,111 @@ class Examiner {
 
   Examination run() {
     if (!result_.constants.finite()) {
-      fail_assumption();
+      assumption_1_fails();
       return std::move(result_);
     }
     optimal_ = policy_iteration(mdp_);
-    const auto l_star = lipschitz_constant(optimal_.q, perturbation_.metric());
-    result_.lipschitz_of_q_star = l_star.value;
-    set_deltas();
+    result_.lipschitz_of_q_star = lipschitz_constant(optimal_.q, perturbation_.metric()).value;
+    set_constants();
     iterate();
-    limits();
-    test_time();
-    belief();
+    Gap limit;
+    const bool known = limit_of_gaps(limit);
+    theorem_1(limit, known);
+    strengthening_a(limit, known);
+    strengthening_b(limit, known);
+    strengthening_e();
+    strengthening_f();
     return std::move(result_);
   }
 
  private:
-  void fail_assumption() {
-    const auto& c = result_.constants;
-    const auto& bad = c.l_r.infinite ? c.l_r : c.l_p.infinite ? c.l_p : c.k_tv;
-    result_.failed_assumption = fmt::format(
-        "Assumption 1: states {} and {} are at distance 0 but their {} for action {} differ, so no Lipschitz "
-        "constant exists",
-        bad.s1, bad.s2, c.l_r.infinite ? "rewards" : "transitions", bad.action);
-    for (Check& c2 : result_.checks) c2.verdict = Verdict::assumption_fails;
-  }
-
-  Check* wanted(ClaimId id) { return options_.wants(id) ? &result_.check(id) : nullptr; }
-
-  /// |S| times l_p, R_max and so on, under the chosen reading for what the paper prints and the sound one for the rest.
-  void set_deltas() {
-    const auto& c = result_.constants;
-    const double r_max_read = options_.reading == Reading::paper ? std::max(0.0, c.r_max_signed) : c.r_max;
-    l_printed_ = bounds::lipschitz_of_q_printed(gamma_, c.l_r.value, c.l_p.value, mdp_.states(), r_max_read);
-    const double l_printed_sound =
-        bounds::lipschitz_of_q_printed(gamma_, c.l_r.value, c.l_p.value, mdp_.states(), c.r_max);
-    l_repaired_ = bounds::lipschitz_of_q(gamma_, c.l_r.value, c.l_p.value, mdp_.states(), c.r_max);
-    const double eps = perturbation_.radius();
-    delta_printed_ = bounds::delta(eps, gamma_, l_printed_);
-    delta_printed_sound_ = bounds::delta(eps, gamma_, l_printed_sound);
-    delta_repaired_ = bounds::delta(eps, gamma_, l_repaired_);
-    delta_tv_ = bounds::delta(eps, gamma_, bounds::lipschitz_of_q_tv(gamma_, c.l_r.value, c.k_tv.value, c.span));
-    d_0_ = std::max(0.0, optimal_.q.maxCoeff());
-    u_0_ = std::max(0.0, -optimal_.q.minCoeff());
-    rounding_ = 1e-14 * static_cast<double>(mdp_.states() + 10) * result_.constants.r_max / (1 - gamma_);
-  }
-
-  /// max (Q* - Q) for the attacked values of one policy pair, and how well it is known.
+  /// The attacked values of one policy pair below Q*, and how well they are known.
   struct Gap {
-    double pair = 0;    ///< against omega_n
-    double robust = 0;  ///< against the optimal attacker of pi_n
-    double error = 0;
+    double pair = 0;    ///< max (Q* - Q^{pi_n o omega_n})
+    double robust = 0;  ///< max (Q* - Q) for the optimal attacker of pi_n
+    double error = 0;   ///< of both
+    Place pair_place, robust_place;
   };
 
-  double slack(double right, double error) const { return error + formula_rounding * std::abs(right) + rounding_; }
+  // ---- The claims, in the paper's order ----
 
-  /// Lemma 1: an instance left <= L d for the pair of states where left - L d is largest.
-  void check_lipschitz(Check& check, const QTable<double>& q, double l, double error, long n) {
-    const auto constant = lipschitz_constant(q, perturbation_.metric());
-    if (constant.infinite) return check.observe(std::numeric_limits<double>::infinity(), l, 0, n);
-    const double d = perturbation_.metric().distance(constant.s1, constant.s2);
-    check.observe(constant.value * d, l * d, slack(l * d, 2 * error), n);
-  }
-
-  const Gap& gap_of(int pair, const PolicyPair& policies, long n) {
-    if (static_cast<std::size_t>(pair) < gaps_.size()) return gaps_[static_cast<std::size_t>(pair)];
-    compose(policies.policy, policies.attack, composed_);
-    const auto attacked = evaluate_policy(mdp_, composed_);
-    const auto robust = evaluate_against_optimal_attack(mdp_, perturbation_, policies.policy);
-    Gap gap;
-    gap.pair = (optimal_.q - attacked.q).maxCoeff();
-    gap.robust = (optimal_.q - robust.q).maxCoeff();
-    gap.error = optimal_.error + std::max(attacked.error, robust.error);
-    gaps_.push_back(gap);
-    if (Check* c = wanted(ClaimId::lemma_1)) check_lipschitz(*c, attacked.q, l_printed_, attacked.error, n);
-    regime(policies);
-    return gaps_.back();
-  }
-
-  void regime(const PolicyPair& policies) {
-    for (std::size_t s = 0; s < policies.attack.size(); ++s) {
-      if (policies.policy[static_cast<std::size_t>(policies.attack[s])] != policies.policy[s]) {
-        result_.attack_changes_action = true;
-      }
+  /// Lemma 1 (paper, equation 3), for the best response omega_n of the paper and for the optimal attacker:
+  /// |Q(s,a) - Q(t,a)| <= (l_r + |S| l_p R_max/(1-gamma)) |x_s - x_t|.
+  void lemma_1(long n, const Table& attacked, const Table& robust, double error) {
+    if (Check* c = wanted(ClaimId::lemma_1)) {
+      lipschitz(*c, attacked, l_printed_, error, n);
+      lipschitz(*c, robust, l_printed_, error, n);
     }
   }
 
-  void at_round(long n, const QTable<double>& q, int pair, const PolicyPair& policies) {
-    const Gap gap = gap_of(pair, policies, n);
-    if (Check* c = wanted(ClaimId::c_finite_n)) {
-      const double right = bounds::finite_n(gamma_, delta_repaired_, d_0_, u_0_, n);
-      c->observe(gap.robust, right, slack(right, gap.error), n);
-    }
-    if (Check* c = wanted(ClaimId::d_total_variation)) {
-      const double right = bounds::finite_n(gamma_, delta_tv_, d_0_, u_0_, n);
-      c->observe(gap.robust, right, slack(right, gap.error), n);
-    }
-    backups(n, q, policies);
-    if (Check* c = wanted(ClaimId::lemma_1_iterates); c && (n < 8 || (n & (n - 1)) == 0)) {
-      check_lipschitz(*c, q, l_repaired_, rounding_, n);
-    }
-    greedy_policy(q, greedy_, options_.tie);
-    result_.pessimism_changes_action |= greedy_ != policies.policy;
+  /// Lemma 1 for the iterates, as the proof of Lemma 2 uses it: Q_n is Lipschitz with l_r + gamma |S| l_p
+  /// R_max/(1-gamma). Looked at in rounds 0 to 7 and then in powers of two.
+  void lemma_1_iterates(long n, const Table& q) {
+    Check* c = wanted(ClaimId::lemma_1_iterates);
+    if (c && (n < 8 || (n & (n - 1)) == 0)) lipschitz(*c, q, l_repaired_, rounding_, n);
   }
 
-  /// Lemmas 2 and 3 at round n.
-  void backups(long n, const QTable<double>& q, const PolicyPair& policies) {
-    compose(policies.policy, policies.attack, composed_);
-    bellman_pair(mdp_, composed_, q, values_, next_);
+  /// Lemma 2 (paper, equation 4): |T*Q_n - Q_{n+1}| <= Delta. `next` is Q_{n+1}.
+  void lemma_2(long n, const Table& q, const Table& next) {
     if (Check* c = wanted(ClaimId::lemma_2)) {
       bellman_optimality(mdp_, q, values_, other_);
-      const double left = (other_ - next_).cwiseAbs().maxCoeff();
-      c->observe(left, delta_printed_, slack(delta_printed_, 0), n);
+      double loss = 0;
+      const Place place = place_of_largest((other_ - next).cwiseAbs(), Table::Zero(q.rows(), q.cols()), loss);
+      observe(*c, loss, delta_printed_, 0, n, place);
     }
+  }
+
+  /// Lemma 3: |T^{pi o omega}Q_n - T^{pi o omega}Q*| <= gamma |Q_n - Q*|. `next` is T^{pi o omega}Q_n.
+  void lemma_3(long n, const Table& q, const Table& next) {
     if (Check* c = wanted(ClaimId::lemma_3)) {
       bellman_pair(mdp_, composed_, optimal_.q, values_, other_);
-      const double right = gamma_ * (q - optimal_.q).cwiseAbs().maxCoeff();
-      c->observe((other_ - next_).cwiseAbs().maxCoeff(), right, slack(right, 0), n);
+      observe(*c, (other_ - next).cwiseAbs().maxCoeff(), gamma_ * (q - optimal_.q).cwiseAbs().maxCoeff(), 0, n);
     }
   }
 
-  void iterate() {
-    PessimisticQIterationOptions<double> iteration;
-    iteration.max_iterations = options_.max_iterations;
-    iteration.tie = options_.tie;
-    run_ = pessimistic_q_iteration<double>(
-        mdp_, perturbation_, iteration, [this](long n, const QTable<double>& q, int pair, const PolicyPair& policies) {
-          at_round(n, q, pair, policies);
-        });
-    result_.fate = run_.fate;
-    result_.period = run_.period;
-    result_.iterations = run_.iterations;
-    result_.pairs = static_cast<long>(run_.pairs.size());
+  /// Theorem 1: limsup |Q* - Q^{pi_n o omega_n}| <= (1+gamma)/(1-gamma)^2 Delta, R_max as the reading has it.
+  void theorem_1(const Gap& limit, bool known) {
+    at_the_limit(ClaimId::theorem_1, known, limit.pair, bounds::theorem_1(gamma_, delta_printed_), limit.error,
+                 limit.pair_place);
   }
 
-  /// Theorem 1, A and B: the limsup is the maximum over the pairs that recur.
-  void limits() {
-    Gap limit;
-    if (run_.fate != Fate::undetermined) {
-      for (long n = run_.iterations - run_.period; n < run_.iterations; ++n) {
-        const Gap& gap = gaps_[static_cast<std::size_t>(run_.pair_of[static_cast<std::size_t>(n)])];
-        limit.pair = std::max(limit.pair, gap.pair);
-        limit.robust = std::max(limit.robust, gap.robust);
-        limit.error = std::max(limit.error, gap.error);
-      }
-      result_.gap = limit.robust;
-    }
-    limit_check(ClaimId::theorem_1, limit.pair, bounds::theorem_1(gamma_, delta_printed_), limit.error);
-    limit_check(ClaimId::a_optimal_attacker, limit.robust, bounds::theorem_1(gamma_, delta_printed_sound_),
-                limit.error);
-    limit_check(ClaimId::b_one_sided, limit.robust, bounds::theorem_1_one_sided(gamma_, delta_printed_sound_),
-                limit.error);
+  /// A: Theorem 1 against the optimal attacker of pi_n.
+  void strengthening_a(const Gap& limit, bool known) {
+    at_the_limit(ClaimId::a_optimal_attacker, known, limit.robust, bounds::theorem_1(gamma_, delta_printed_sound_),
+                 limit.error, limit.robust_place);
   }
 
-  void limit_check(ClaimId id, double left, double right, double error) {
-    Check* c = wanted(id);
-    if (!c) return;
-    if (run_.fate == Fate::undetermined) {
-      c->verdict = Verdict::undetermined;
-    } else {
-      c->observe(left, right, slack(right, error), run_.iterations - 1);
-    }
+  /// B: the constant 1/(1-gamma)^2 in the place of (1+gamma)/(1-gamma)^2.
+  void strengthening_b(const Gap& limit, bool known) {
+    at_the_limit(ClaimId::b_one_sided, known, limit.robust, bounds::theorem_1_one_sided(gamma_, delta_printed_sound_),
+                 limit.error, limit.robust_place);
   }
 
-  /// How much the right sides of E and F may be off because L* comes from a computed Q*.
-  double l_star_slack(double factor) const {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (State s = 0; s < mdp_.states(); ++s) {
-      for (State t = s + 1; t < mdp_.states(); ++t) {
-        const double d = perturbation_.metric().distance(s, t);
-        if (d > 0) nearest = std::min(nearest, d);
-      }
-    }
-    return factor * 2 * optimal_.error / nearest;
-  }
+  /// C: the gap at every n, against the optimal attacker.
+  void strengthening_c(long n, const Gap& gap) { at_round_n(ClaimId::c_finite_n, delta_repaired_, n, gap); }
 
-  /// E: the maximin policy of Q* itself, against its optimal attacker.
-  void test_time() {
+  /// D: the same with the Lipschitz constant from total variation.
+  void strengthening_d(long n, const Gap& gap) { at_round_n(ClaimId::d_total_variation, delta_tv_, n, gap); }
+
+  /// E: the maximin policy of Q* itself, against its optimal attacker, loses at most 2 eps gamma L*/(1-gamma) in Q.
+  void strengthening_e() {
     Check* c = wanted(ClaimId::e_test_time);
     if (!c) return;
     Policy policy;
     std::vector<double> scratch;
     maximin_policy(optimal_.q, perturbation_, policy, scratch, MinAggregator{}, options_.tie);
     const auto robust = evaluate_against_optimal_attack(mdp_, perturbation_, policy);
-    const double right = bounds::test_time_pessimism(perturbation_.radius(), gamma_, result_.lipschitz_of_q_star);
-    const double l_error = l_star_slack(2 * perturbation_.radius() * gamma_ / (1 - gamma_));
-    c->observe((optimal_.q - robust.q).maxCoeff(), right, slack(right, optimal_.error + robust.error + l_error));
+    const double eps = perturbation_.radius();
+    const double right = bounds::test_time_pessimism(eps, gamma_, result_.lipschitz_of_q_star);
+    const double l_error = bounds::test_time_pessimism(eps, gamma_, error_of_l_star());
+    double gap = 0;
+    const Place place = place_of_largest(optimal_.q, robust.q, gap);
+    observe(*c, gap, right, optimal_.error + robust.error + l_error, -1, place);
   }
 
-  /// F: the maximin policy of Q* over the exact belief, against any attack.
-  void belief() {
+  /// F: the maximin policy of Q* over the exact belief, against any attack, loses at most rho L*/(1-gamma) in V, where
+  /// rho is the largest distance found from a true state to a member of the belief held in it.
+  void strengthening_f() {
     Check* c = wanted(ClaimId::f_belief);
     if (!c) return;
     BeliefGameOptions game;
@@ -270,12 +170,170 @@ class Examiner {
     try {
       const auto value = solve_belief_game(mdp_, perturbation_, maximin_belief_policy(optimal_.q, options_.tie), game);
       const double right = bounds::belief(value.reach, gamma_, result_.lipschitz_of_q_star);
-      const double l_error = l_star_slack(value.reach / (1 - gamma_));
-      c->observe((optimal_.v - value.v).maxCoeff(), right, slack(right, optimal_.error + value.error + l_error));
+      const double l_error = bounds::belief(value.reach, gamma_, error_of_l_star());
+      Eigen::Index s = 0;
+      const double loss = (optimal_.v - value.v).maxCoeff(&s);
+      observe(*c, loss, right, optimal_.error + value.error + l_error, -1, {static_cast<State>(s), -1, -1});
       result_.belief_positions = value.positions;
     } catch (const BudgetExhausted&) {
-      c->verdict = Verdict::undetermined;
+      c->undecided();
     }
+  }
+
+  // ---- What the claims share ----
+
+  Check* wanted(ClaimId id) { return options_.wants(id) ? &result_.check(id) : nullptr; }
+
+  /// One instance, with the error of its sides and the rounding of the formulas. A slack that is not small against what
+  /// there is to lose decides nothing.
+  void observe(Check& check, double left, double right, double error, long n, const Place& place = {}) {
+    const double slack = error + formula_rounding * std::abs(right) + rounding_;
+    if (result_.trivial > 0 && slack > bluntest_slack * result_.trivial && left <= right + slack) {
+      check.undecided();
+    } else {
+      check.observe(left, right, slack, n, place);
+    }
+  }
+
+  /// |Q(s,a) - Q(t,a)| <= L |x_s - x_t| for all s, t and a, each side of every instance known to within the error.
+  void lipschitz(Check& check, const Table& q, double l, double error, long n) {
+    for (State s = 0; s < q.rows(); ++s) {
+      for (State t = s + 1; t < q.rows(); ++t) {
+        const double right = l * perturbation_.metric().distance(s, t);
+        if (!std::isfinite(right)) continue;  // no path joins the states: nothing is claimed
+        for (Action a = 0; a < q.cols(); ++a)
+          observe(check, std::abs(q(s, a) - q(t, a)), right, 2 * error, n, {s, t, a});
+      }
+    }
+  }
+
+  void at_the_limit(ClaimId id, bool known, double left, double right, double error, const Place& place) {
+    Check* c = wanted(id);
+    if (!c) return;
+    if (known) {
+      observe(*c, left, right, error, run_.iterations - 1, place);
+    } else {
+      c->undecided();
+    }
+  }
+
+  void at_round_n(ClaimId id, double delta, long n, const Gap& gap) {
+    if (Check* c = wanted(id)) {
+      const double start_error = 2 * optimal_.error * gamma_ / (1 - gamma_);  // of d_0 + u_0
+      observe(*c, gap.robust, bounds::finite_n(gamma_, delta, d_0_, u_0_, n), gap.error + start_error, n,
+              gap.robust_place);
+    }
+  }
+
+  /// Q_n is Lipschitz, and so are all claims but Lemma 3, only where Assumption 1 holds with finite constants.
+  void assumption_1_fails() {
+    const auto& c = result_.constants;
+    const auto& bad = c.l_r.infinite ? c.l_r : c.l_p.infinite ? c.l_p : c.k_tv;
+    result_.failed_assumption = fmt::format(
+        "Assumption 1: states {} and {} are at distance 0, or as good as, but their {} for action {} differ, so no "
+        "Lipschitz constant exists",
+        bad.s1, bad.s2, c.l_r.infinite ? "rewards" : "transitions", bad.action);
+    for (const Claim& claim : claims()) {
+      if (Check* check = wanted(claim.id)) check->verdict = Verdict::assumption_fails;
+    }
+  }
+
+  /// The Lipschitz constants and Deltas of the claims: R_max under the chosen reading for what the paper prints, sound
+  /// for the rest.
+  void set_constants() {
+    const auto& c = result_.constants;
+    const double r_max_read = options_.reading == Reading::paper ? std::max(0.0, c.r_max_signed) : c.r_max;
+    const auto printed = [&](double r_max) {
+      return bounds::lipschitz_of_q_printed(gamma_, c.l_r.value, c.l_p.value, mdp_.states(), r_max);
+    };
+    l_printed_ = printed(r_max_read);
+    l_repaired_ = bounds::lipschitz_of_q(gamma_, c.l_r.value, c.l_p.value, mdp_.states(), c.r_max);
+    const double eps = perturbation_.radius();
+    delta_printed_ = bounds::delta(eps, gamma_, l_printed_);
+    delta_printed_sound_ = bounds::delta(eps, gamma_, printed(c.r_max));
+    delta_repaired_ = bounds::delta(eps, gamma_, l_repaired_);
+    delta_tv_ = bounds::delta(eps, gamma_, bounds::lipschitz_of_q_tv(gamma_, c.l_r.value, c.k_tv.value, c.span));
+    d_0_ = std::max(0.0, optimal_.q.maxCoeff());
+    u_0_ = std::max(0.0, -optimal_.q.minCoeff());
+    rounding_ = 1e-14 * static_cast<double>(mdp_.states() + 10) * c.r_max / (1 - gamma_);
+  }
+
+  /// How far L*, taken from a computed Q*, may be below the Lipschitz constant of the exact one. States with the same
+  /// rewards and transitions have the same exact values and are left out, however near they are.
+  double error_of_l_star() const {
+    double largest = result_.lipschitz_of_q_star;
+    for (State s = 0; s < mdp_.states(); ++s) {
+      for (State t = s + 1; t < mdp_.states(); ++t) {
+        const double d = perturbation_.metric().distance(s, t);
+        for (Action a = 0; a < mdp_.actions(); ++a) {
+          const auto x = mdp_.successors(s, a), y = mdp_.successors(t, a);
+          if (mdp_.reward(s, a) == mdp_.reward(t, a) && std::equal(x.begin(), x.end(), y.begin(), y.end())) continue;
+          largest = std::max(largest, (std::abs(optimal_.q(s, a) - optimal_.q(t, a)) + 2 * optimal_.error) / d);
+        }
+      }
+    }
+    return largest - result_.lipschitz_of_q_star;
+  }
+
+  void iterate() {
+    PessimisticQIterationOptions<double> iteration;
+    iteration.max_iterations = options_.max_iterations;
+    iteration.tie = options_.tie;
+    run_ = pessimistic_q_iteration<double>(
+        mdp_, perturbation_, iteration,
+        [this](long n, const Table& q, int pair, const PolicyPair& policies) { round(n, q, pair, policies); });
+    result_.fate = run_.fate;
+    result_.period = run_.period;
+    result_.periodic_from = run_.fate == Fate::undetermined ? -1 : run_.periodic_from;
+    result_.iterations = run_.iterations;
+    result_.pairs = static_cast<long>(run_.pairs.size());
+  }
+
+  /// Everything that is claimed of round n.
+  void round(long n, const Table& q, int pair, const PolicyPair& policies) {
+    compose(policies.policy, policies.attack, composed_);
+    const Gap gap = gap_of(pair, policies, n);
+    bellman_pair(mdp_, composed_, q, values_, next_);
+    lemma_1_iterates(n, q);
+    lemma_2(n, q, next_);
+    lemma_3(n, q, next_);
+    strengthening_c(n, gap);
+    strengthening_d(n, gap);
+    greedy_policy(q, greedy_, options_.tie);
+    result_.pessimism_changes_action |= greedy_ != policies.policy;
+    result_.attack_changes_action |= composed_ != policies.policy;
+  }
+
+  /// The values of a policy pair, computed when it is first met. Its composed policy is in composed_.
+  const Gap& gap_of(int pair, const PolicyPair& policies, long n) {
+    if (static_cast<std::size_t>(pair) < gaps_.size()) return gaps_[static_cast<std::size_t>(pair)];
+    const auto attacked = evaluate_policy(mdp_, composed_);
+    const auto robust = evaluate_against_optimal_attack(mdp_, perturbation_, policies.policy);
+    const double error = std::max(attacked.error, robust.error);
+    lemma_1(n, attacked.q, robust.q, error);
+    Gap gap;
+    gap.pair_place = place_of_largest(optimal_.q, attacked.q, gap.pair);
+    gap.robust_place = place_of_largest(optimal_.q, robust.q, gap.robust);
+    gap.error = optimal_.error + error;
+    gaps_.push_back(gap);
+    return gaps_.back();
+  }
+
+  /// The limsup of the gaps is their maximum over the pairs that recur. Returns whether it is known.
+  bool limit_of_gaps(Gap& limit) {
+    if (run_.fate == Fate::undetermined) {
+      result_.gap = std::numeric_limits<double>::quiet_NaN();
+      return false;
+    }
+    limit = {-1, -1, 0, {}, {}};
+    for (long n = run_.iterations - run_.period; n < run_.iterations; ++n) {
+      const Gap& gap = gaps_[static_cast<std::size_t>(run_.pair_of[static_cast<std::size_t>(n)])];
+      if (gap.pair > limit.pair) limit.pair = gap.pair, limit.pair_place = gap.pair_place;
+      if (gap.robust > limit.robust) limit.robust = gap.robust, limit.robust_place = gap.robust_place;
+      limit.error = std::max(limit.error, gap.error);
+    }
+    result_.gap = limit.robust;
+    return true;
   }
 
   const FiniteMdp<double>& mdp_;
@@ -289,10 +347,10 @@ class Examiner {
   double l_printed_ = 0, l_repaired_ = 0;
   double delta_printed_ = 0, delta_printed_sound_ = 0, delta_repaired_ = 0, delta_tv_ = 0;
   double d_0_ = 0, u_0_ = 0;
-  double rounding_ = 0;  ///< of a few backups, absolute
+  double rounding_ = 0;  // of a few backups, absolute
   Policy composed_, greedy_;
   Values<double> values_;
-  QTable<double> next_, other_;
+  Table next_, other_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include <maximin/proofs_check/check.hpp>
 #include <maximin/proofs_check/claims.hpp>
 #include <maximin/tabular/pessimistic_q_iteration.hpp>
 #include <maximin/theory/finite_mdp.hpp>
@@ -13,34 +14,6 @@
 #include <maximin/theory/perturbation.hpp>
 
 namespace maximin {
-
-/// What a check came to.
-enum class Verdict {
-  holds,
-  violated,
-  undetermined,      ///< a budget ran out before both sides were known
-  assumption_fails,  ///< the model breaks an assumption of the claim
-  not_asked,
-};
-
-/// One claim on one model: `left <= right` was wanted, and counts as seen while left <= right + slack.
-/// Of all its instances (rounds n, pairs of states, actions) the tightest is kept.
-struct Check {
-  Verdict verdict = Verdict::not_asked;
-  double left = 0;
-  double right = 0;
-  double slack = 0;  ///< certified numerical error of both sides together
-  long n = -1;       ///< the round of the tightest instance, or -1 where there is none
-  double least_right = std::numeric_limits<double>::infinity();  ///< over all instances: the bound at its best n
-  long instances = 0;
-
-  /// Takes one instance into account. NaN or infinity on any side is a violation.
-  void observe(double l, double r, double s, long round = -1);
-
-  /// (left - slack)/right: what is certain of left/right. Above 1 exactly when the instance is violated; infinite for a
-  /// violation with right = 0 or a side that is not finite; 0 when left is within the slack of 0.
-  double tightness() const;
-};
 
 struct ExaminationOptions {
   Reading reading = Reading::corrected;
@@ -61,9 +34,10 @@ struct Examination {
   double radius = 0;  ///< what the bounds use as eps: the largest distance inside a ball
   ModelConstants<double> constants;
   double lipschitz_of_q_star = 0;  ///< L*
-  double trivial = 0;              ///< span(R)/(1-gamma): what a bound must beat to say anything
+  double trivial = 0;              ///< gamma span(R)/(1-gamma): what a bound must beat to say anything
   Fate fate = Fate::undetermined;
   long period = 0;
+  long periodic_from = -1;  ///< the round from which the pairs repeat, when the fate is known
   long iterations = 0;
   long pairs = 0;                         ///< distinct policy pairs met
   State largest_ball = 0;                 ///< states in it

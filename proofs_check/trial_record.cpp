@@ -45,6 +45,9 @@ Json check_to_json(const Check& check) {
           {"right", number(check.right)},
           {"slack", number(check.slack)},
           {"n", check.n},
+          {"state", check.place.state},
+          {"other_state", check.place.other},
+          {"action", check.place.action},
           {"least_right", number(check.least_right)},
           {"instances", check.instances}};
 }
@@ -56,6 +59,7 @@ Check check_from_json(const Json& json) {
   check.right = number(json.at("right"));
   check.slack = number(json.at("slack"));
   check.n = json.at("n").get<long>();
+  check.place = {json.at("state").get<State>(), json.at("other_state").get<State>(), json.at("action").get<Action>()};
   check.least_right = number(json.at("least_right"));
   check.instances = json.at("instances").get<long>();
   return check;
@@ -79,6 +83,7 @@ void for_each_field(E& e, Visit visit) {
   visit("l_star", e.lipschitz_of_q_star);
   visit("trivial", e.trivial);
   visit("period", e.period);
+  visit("periodic_from", e.periodic_from);
   visit("iterations", e.iterations);
   visit("pairs", e.pairs);
   visit("largest_ball", e.largest_ball);

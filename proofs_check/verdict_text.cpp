@@ -55,9 +55,15 @@ std::string conclusion(const CampaignSummary& s, std::uint64_t seed, bool comple
     case ExitCode::undetermined:
       if (s.trials > 0 && s.vacuous()) {
         return fmt::format(
-            "UNDETERMINED: every bound was vacuous on every model (at or above span(R)/(1-gamma)), so this "
+            "UNDETERMINED: every bound was vacuous on every model (at or above gamma span(R)/(1-gamma)), so this "
             "campaign verifies nothing. Ask for smaller eps, gamma or l_p, or --family informative.{}\n",
             interrupted);
+      }
+      if (s.some_claim_never_decided()) {
+        return fmt::format(
+            "UNDETERMINED: no violation in {} models, but a claim that was asked for was decided on none of them; see "
+            "--max-iterations, --max-positions.{}\n",
+            s.trials, interrupted);
       }
       return fmt::format("UNDETERMINED: {} models and no violation.{}\n", s.trials, interrupted);
     case ExitCode::assumption_fails:
@@ -83,8 +89,12 @@ std::string witness(const char* name, const LipschitzConstant<double>& c) {
 }
 
 std::string fate_text(const Examination& e) {
-  if (e.fate == Fate::settled) return fmt::format("settled after {} rounds", e.iterations);
-  if (e.fate == Fate::cycles) return fmt::format("cycles with period {}, seen after {} rounds", e.period, e.iterations);
+  if (e.fate == Fate::settled)
+    return fmt::format("the policy pair settles at n = {}, seen at n = {}", e.periodic_from, e.iterations);
+  if (e.fate == Fate::cycles) {
+    return fmt::format("the policy pairs cycle with period {} from n = {}, seen at n = {}", e.period, e.periodic_from,
+                       e.iterations);
+  }
   return fmt::format("neither settled nor cycled in {} rounds", e.iterations);
 }
 
@@ -103,7 +113,7 @@ std::string check_row(const Claim& claim, const Check& check, bool informative) 
 
 ExitCode exit_code(const CampaignSummary& s, bool complete) {
   if (s.violations > 0) return ExitCode::violated;
-  if (!complete || s.vacuous()) return ExitCode::undetermined;
+  if (!complete || s.vacuous() || s.some_claim_never_decided()) return ExitCode::undetermined;
   return s.assumption_failures > 0 ? ExitCode::assumption_fails : ExitCode::holds;
 }
 
@@ -122,7 +132,8 @@ std::string verdict_text(const CampaignSummary& s, Reading reading, std::uint64_
     if (cs.checked() + cs.undetermined + cs.assumption_fails > 0) text += claim_row(c, cs);
   }
   text +=
-      "\n  informative: the bound is below span(R)/(1-gamma); median, p99 and max are of left side / right side\n\n";
+      "\n  informative: the bound is below gamma span(R)/(1-gamma); median, p99 and max are of (left - slack) / "
+      "right\n\n";
   text += fmt::format("Q_n settled on {}, cycled on {}{}, neither on {}\n", s.settled, s.cycles, periods(s),
                       s.fate_undetermined);
   text += fmt::format(
@@ -141,9 +152,11 @@ std::string verdict_text(const TrialRecord& record, Reading reading) {
   text += witness("l_r", e.constants.l_r) + witness("l_p", e.constants.l_p) + witness("K", e.constants.k_tv);
   text += fmt::format("  {:<14} {:.6g}\n  {:<14} {:.6g}   (R from {:.6g} to {:.6g})\n", "L*", e.lipschitz_of_q_star,
                       "span(R)", e.constants.span, e.constants.r_min, e.constants.r_max_signed);
-  text += fmt::format("  {:<14} {:.6g}   a bound at or above it is vacuous\n\n", "span/(1-gamma)", e.trivial);
+  text += fmt::format("  {:<14} {:.6g}   gamma span(R)/(1-gamma): a bound at or above it is vacuous\n\n", "trivial",
+                      e.trivial);
   if (!e.failed_assumption.empty()) return text + "ASSUMPTION FAILS: " + e.failed_assumption + "\n";
-  text += fmt::format("Q_n: {}; {} policy pairs; limsup gap {:.6g}\n\n", fate_text(e), e.pairs, e.gap);
+  text += fmt::format("Q_n: {}; {} different pairs; limsup gap {}\n\n", fate_text(e), e.pairs,
+                      e.fate == Fate::undetermined ? "unknown" : fmt::format("{:.6g}", e.gap));
   long vacuous = 0, bounds_checked = 0;
   for (const Claim& c : claims()) {
     const Check& check = e.check(c.id);

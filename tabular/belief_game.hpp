@@ -16,6 +16,7 @@ namespace maximin {
 using BeliefPolicy = std::function<Action(std::span<const State> belief)>;
 
 /// argmax_a min_{m in belief} q(m,a): the belief-maximin policy of a table (paper, section 3.3). Copies the table.
+/// A copy of the policy serves one thread at a time.
 template <class Scalar>
 BeliefPolicy maximin_belief_policy(QTable<Scalar> q, TieBreak tie = TieBreak::lowest_index);
 

@@ -15,7 +15,7 @@ template <class Scalar>
 struct CertifiedSolution {
   QTable<Scalar> q;  ///< |S| x |A|
   Values<Scalar> v;  ///< |S|
-  Policy policy;     ///< the action taken in each true state
+  Policy policy;     ///< the action taken in each true state; greedy for values within `error`
   Scalar error{0};   ///< in the maximum norm, same unit as the rewards
   long sweeps = 0;   ///< passes over the transitions
 };
@@ -58,6 +58,9 @@ class MacQueenBound {
     row_defect_ = defect + static_cast<Scalar>(longest) * u;
     relative_rounding_ = static_cast<Scalar>(longest + 4) * u;
     largest_reward_ = mdp.rewards().cwiseAbs().maxCoeff();
+    if (!std::isfinite(Scalar(4) * scale() / (Scalar(1) - gamma_))) {
+      throw InputError("rewards: so large that values overflow, expected smaller rewards or another unit");
+    }
     if (!(gamma_ * (Scalar(1) + row_defect_) < Scalar(1))) {
       throw InputError("discount: too close to 1 for rows that sum to 1 only to rounding, expected a smaller discount");
     }

@@ -23,7 +23,7 @@ Scalar improvement_margin(const MacQueenBound<Scalar>& bound, const Values<Scala
   return Scalar(2) * bound.rounding_of_backup(v.cwiseAbs().maxCoeff());
 }
 
-/// Changes the policy only where another choice is better by more than rounding, so that improvement must end.
+/// Changes the policy only where another choice is better by more than the rounding of a backup.
 template <class Scalar>
 bool improve(const ControlProblem<Scalar>& problem, const Values<Scalar>& v, Scalar margin, Policy& policy) {
   bool changed = false;
@@ -93,11 +93,13 @@ CertifiedSolution<Scalar> iterate_policies(const ControlProblem<Scalar>& problem
   Policy policy;
   problem.sweep(v, tv, policy, options.tie);
   long sweeps = 1;
+  // Improvement ends after a handful of solves; the limit is for a solve so inexact that it would go round in circles.
+  constexpr long most_solves = 1000;
   do {
     if (sweeps >= options.max_sweeps) give_up("policy iteration", sweeps, INFINITY, target);
     v = solve_policy_values(problem.mdp(), policy);
     ++sweeps;
-  } while (improve(problem, v, improvement_margin(bound, v), policy));
+  } while (sweeps <= most_solves && improve(problem, v, improvement_margin(bound, v), policy));
   // The linear solve is only as good as its rounding; a few plain sweeps bring it to the target.
   for (long polish = 0; polish < 1000 && sweeps < options.max_sweeps; ++polish, ++sweeps) {
     problem.sweep(v, tv, policy, options.tie);

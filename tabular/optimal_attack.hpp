@@ -12,7 +12,7 @@ template <class Scalar>
 struct RobustEvaluation {
   QTable<Scalar> q;     ///< fixed point of T^{pi}_rob, |S| x |A|
   Values<Scalar> v;     ///< V_{pi o omega_pi}(s), |S|
-  AttackPolicy attack;  ///< an optimal attack: what to show in each true state
+  AttackPolicy attack;  ///< what to show in each true state: optimal to within `error`
   Policy composed;      ///< the action it provokes in each true state
   Scalar error{0};      ///< certified, in the maximum norm
   long sweeps = 0;

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <maximin/theory/bounds.hpp>
+
 namespace maximin {
 namespace {
 
@@ -73,6 +75,14 @@ QTable<Scalar> starting_point(const FiniteMdp<Scalar>& mdp, const std::optional<
   return *initial;
 }
 
+/// How small |Q_{n+k} - Q_n| must be for period k.
+template <class Scalar>
+Scalar near(const FiniteMdp<Scalar>& mdp, const PessimisticQIterationOptions<Scalar>& options, long k) {
+  const Scalar scale = mdp.rewards().cwiseAbs().maxCoeff() / (Scalar(1) - mdp.discount());
+  const Scalar left = Scalar(1) - bounds::power(mdp.discount(), k);
+  return std::max(Scalar(options.tolerance) * left, Scalar(4) * unit_roundoff<Scalar>()) * scale;
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -89,8 +99,6 @@ PessimisticQIteration<Scalar> pessimistic_q_iteration(const FiniteMdp<Scalar>& m
   PessimisticStep<Scalar> step;
   PeriodWatch watch(options.max_period);
   RecentIterates<Scalar> recent(options.max_period + 2);
-  const Scalar scale = mdp.rewards().cwiseAbs().maxCoeff() / (Scalar(1) - mdp.discount());
-  const Scalar near = Scalar(options.tolerance) * scale;
 
   recent[0] = starting_point(mdp, options.initial);
   if (options.keep_trajectory) result.trajectory.push_back(recent[0]);
@@ -105,11 +113,13 @@ PessimisticQIteration<Scalar> pessimistic_q_iteration(const FiniteMdp<Scalar>& m
 
     watch.extend(result.pair_of);
     const long k = watch.candidate();
-    if (k > 0 && distance(recent[n + 1], recent[n + 1 - k]) <= near) {
+    if (k > 0 && distance(recent[n + 1], recent[n + 1 - k]) <= near(mdp, options, k)) {
       result.fate = k == 1 ? Fate::settled : Fate::cycles;
       result.period = k;
       result.periodic_from = n + 1 - k - watch.run(k);
       if (options.stop_when_periodic) break;
+    } else {
+      result.fate = Fate::undetermined;
     }
   }
   result.q = recent[result.iterations];

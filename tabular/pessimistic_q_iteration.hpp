@@ -24,8 +24,10 @@ template <class Scalar>
 struct PessimisticQIterationOptions {
   std::optional<QTable<Scalar>> initial;  ///< Q_0, |S| x |A|; zero if absent, as in the paper
   long max_iterations = 100'000;
-  long max_period = 64;      ///< the longest cycle of policy pairs that is looked for
-  double tolerance = 1e-12;  ///< |Q_{n+k} - Q_n| at which period k counts as reached, as a fraction of max|R|/(1-gamma)
+  long max_period = 64;  ///< the longest cycle of policy pairs that is looked for
+  /// |Q_{n+k} - Q_n| at which period k counts as reached: this fraction of max|R|/(1-gamma), times 1 - gamma^k, so that
+  /// Q_n is then within that fraction of the orbit it approaches if the pairs go on like this (never below rounding)
+  double tolerance = 1e-12;
   TieBreak tie = TieBreak::lowest_index;
   bool keep_trajectory = false;  ///< store every Q_n
   bool stop_when_periodic = true;

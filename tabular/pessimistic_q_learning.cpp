@@ -186,7 +186,7 @@ class Training {
     return rng.chance(chance) ? static_cast<Action>(rng.below(env_.mdp().actions())) : response.action;
   }
 
-  /// Line 12. Returns how far the entry moved.
+  /// Line 11. Returns how far the entry moved.
   double update(State s, Action a, const Scalar& bootstrap) {
     Scalar& entry = result_.q(s, a);
     const Scalar before = entry;

@@ -35,7 +35,7 @@ class ExplorationSchedule {
   double scale_;  // steps, or visits
 };
 
-/// alpha, the weight of a new sample (paper, Algorithm 1 line 12).
+/// alpha, the weight of a new sample (paper, Algorithm 1 line 11).
 class StepSizeSchedule {
  public:
   /// Always alpha. Throws InputError unless 0 < alpha <= 1.

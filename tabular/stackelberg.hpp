@@ -14,8 +14,8 @@ namespace maximin {
 /// The best that deterministic stationary policies can do against the optimal attacker.
 template <class Scalar>
 struct StackelbergValues {
-  /// V*(s0) = max_pi V_{pi o omega_pi}(s0): the yardstick of the approximate Stackelberg equilibrium. Attained by a
-  /// different policy for each s0, in general.
+  /// max_pi V_{pi o omega_pi}(s0) over deterministic stationary pi: a lower bound on the V*(s0) of the approximate
+  /// Stackelberg equilibrium, whose policies may randomise. Attained by a different policy for each s0, in general.
   Values<Scalar> v;
   std::vector<Policy> best_for_state;  ///< by s0: a policy that attains v[s0], the first in the order of enumeration
 
@@ -23,11 +23,11 @@ struct StackelbergValues {
   /// start state at once, this one is.
   Policy compromise;
   Values<Scalar> compromise_values;
-  /// max_s (v[s] - compromise_values[s]): within `slack` of zero if and only if one policy is best for every start
-  /// state.
+  /// max_s (v[s] - compromise_values[s]). Above `slack` it proves that no one policy is best for every start state.
   Scalar shortfall{0};
   Scalar slack{0};  ///< the largest shortfall that the errors of evaluation can explain
-  /// One policy attains v everywhere: a Stackelberg equilibrium among deterministic stationary policies.
+  /// One policy attains v everywhere as far as the numbers can tell: a Stackelberg equilibrium among deterministic
+  /// stationary policies.
   bool one_policy_is_best_everywhere() const { return shortfall <= slack; }
 
   std::optional<Policy> best_for_start;  ///< maximises sum_s Pr(s) V(s), if a start distribution was given

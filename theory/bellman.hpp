@@ -62,14 +62,15 @@ void attacked_values(const QTable<Scalar>& q, const Policy& policy, const Pertur
   }
 }
 
-/// The Bellman optimality operator T*Q (paper, section 3.5). `v` is scratch.
+/// The Bellman optimality operator T*Q (paper, section 3.6, equation 2). `v` is scratch.
 template <class Scalar>
 void bellman_optimality(const FiniteMdp<Scalar>& mdp, const QTable<Scalar>& q, Values<Scalar>& v, QTable<Scalar>& out) {
   greedy_values(q, v);
   backup(mdp, v, out);
 }
 
-/// The Bellman operator T^{pi o omega}Q of a fixed pair (paper, Definition 4), given the composed policy pi o omega.
+/// The Bellman operator T^{pi o omega}Q of a fixed pair (paper, Definition 3, equation 1), given the composed policy pi
+/// o omega.
 template <class Scalar>
 void bellman_pair(const FiniteMdp<Scalar>& mdp, const Policy& composed, const QTable<Scalar>& q, Values<Scalar>& v,
                   QTable<Scalar>& out) {

@@ -60,7 +60,8 @@ Scalar theorem_1_one_sided(const Scalar& gamma, const Scalar& delta) {
   return delta / (rest * rest);
 }
 
-/// Strengthening C, for every n:
+/// Strengthening C, for every n, where Delta bounds T*Q_n - Q_{n+1} in every round (for the Delta of a Lipschitz
+/// constant: Q_0 = 0, or any Q_0 that is Lipschitz with it):
 ///     gap_n <= [ gamma ( gamma^n (d_0 + u_0) + Delta (1-gamma^n)/(1-gamma) ) + Delta ] / (1-gamma),
 /// d_0 = max (Q*-Q_0)^+, u_0 = max (Q_0-Q*)^+.
 template <class Scalar>
@@ -84,10 +85,12 @@ Scalar belief(const Scalar& rho, const Scalar& gamma, const Scalar& lipschitz_of
   return rho * lipschitz_of_q_star / (Scalar(1) - gamma);
 }
 
-/// span(R)/(1-gamma): no two policies differ by more. A bound at or above it says nothing ("vacuous").
+/// gamma span(R)/(1-gamma): the values Q of no two policies differ by more, for the first reward is the same whatever
+/// they do later. A bound at or above it says nothing ("vacuous"). (Values V may differ by span(R)/(1-gamma); bounds in
+/// V are held to the smaller number as well.)
 template <class Scalar>
 Scalar trivial(const Scalar& gamma, const Scalar& span) {
-  return span / (Scalar(1) - gamma);
+  return gamma * span / (Scalar(1) - gamma);
 }
 
 }  // namespace maximin::bounds

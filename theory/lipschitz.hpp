@@ -13,7 +13,7 @@ namespace maximin {
 template <class Scalar>
 struct LipschitzConstant {
   Scalar value{0};        ///< the constant; meaningless when `infinite`
-  bool infinite = false;  ///< distinct states at distance 0 disagree, so that no constant will do
+  bool infinite = false;  ///< distinct states at distance 0 (or next to it) disagree: no finite constant will do
   State s1 = 0, s2 = 0;   ///< the pair that attains it (equal: every difference is zero)
   Action action = 0;      ///< the action that attains it
   State target = -1;      ///< for l_p, the successor s' that attains it
@@ -27,6 +27,7 @@ struct LipschitzConstant {
       return;
     } else {
       value = difference / distance;
+      infinite = !(value - value == Scalar(0));  // the quotient overflows
     }
     s1 = first;
     s2 = second;

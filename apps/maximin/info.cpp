@@ -72,7 +72,7 @@ std::string info_text(const Problem& problem, const Info& info) {
   const Model<double>& model = problem.model;
   const auto& c = info.constants;
   std::string text = model_line(problem) + balls_line(problem);
-  text += fmt::format("Rewards: {} to {}, span {}; no two policies differ by more than {}.\n", number(c.r_min),
+  text += fmt::format("Rewards: {} to {}, span {}; no two policies differ by more than {} in Q.\n", number(c.r_min),
                       number(c.r_max_signed), number(c.span), number(bounds::trivial(model.mdp.discount(), c.span)));
   text += fmt::format(
       "Transition graph: {} strongly connected component{}, the largest of {} states; {} of {} states are "

@@ -63,7 +63,7 @@ std::string summary_text(const Problem& problem, const CertifiedSolution<double>
   if (!robust.stackelberg) return text + fmt::format("Stackelberg: not solved ({}).\n", robust.stackelberg_unknown);
   return text + fmt::format("Stackelberg: of {} deterministic stationary policies, {} for every start state.\n",
                             robust.stackelberg->policies,
-                            robust.stackelberg->one_policy_is_best_everywhere() ? "one is best" : "none is best");
+                            robust.stackelberg->one_policy_is_best_everywhere() ? "one is best, as far as can be told," : "none is best");
 }
 
 Json agent_json(const Model<double>& model, const RobustSolution::Agent& agent) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -14,9 +15,11 @@
 #include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/progress.hpp>
+#include <maximin/models/make_perturbation.hpp>
 #include <maximin/proofs_check/campaign.hpp>
 #include <maximin/proofs_check/campaign_summary.hpp>
 #include <maximin/proofs_check/report/html_report.hpp>
+#include <maximin/proofs_check/report/round_series.hpp>
 #include <maximin/proofs_check/trial_file.hpp>
 #include <maximin/proofs_check/verdict_text.hpp>
 
@@ -84,6 +87,14 @@ std::vector<TrialRecord> gather(const Options& options, const ModelSource& sourc
   return records;
 }
 
+/// A report that cannot be written should be known before a long run and not after it.
+void check_folder_of(const std::filesystem::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError(fmt::format("{}: no such folder, expected one that exists", folder.string()));
+  }
+}
+
 Json summary_json(const Options& options, const CampaignSummary& summary, bool complete) {
   Json json{{"format", "maximin-campaign"},
             {"version", 1},
@@ -104,17 +115,20 @@ int run_campaign_command(const Options& options) {
     Stream rng(options.seed, 0);
     source(rng);
   }
+  if (!options.report.empty()) check_folder_of(options.report);
   std::optional<TrialFile> file = trial_file(options);
   const std::vector<TrialRecord> records = gather(options, source, file);
   const CampaignSummary summary = summarise(records);
   const bool complete = static_cast<long>(records.size()) == options.trials;
 
-  if (!options.report.empty())
-    apps::write_file(options.report, html_report(configuration(options), records, summary), apps::Overwrite::replace);
   if (options.json) {
     apps::print(apps::json_text(summary_json(options, summary, complete)));
   } else {
     apps::print(verdict_text(summary, examination_options(options).reading, options.seed, complete));
+  }
+  if (!options.report.empty()) {
+    apps::write_file(options.report, html_report(configuration(options), records, summary, replay_options(options)),
+                     apps::Overwrite::replace);
   }
   for (const Claim& c : claims()) {
     const long trial = summary.claims[static_cast<std::size_t>(c.id)].first_violation;
@@ -132,12 +146,11 @@ int run_replay_command(const Options& options) {
   const ModelSource source = model_source(options);
   Stream rng(options.seed, static_cast<std::uint64_t>(*options.replay));
   const DrawnModel drawn = source(rng);
-  const std::vector<TrialRecord> records{run_trial(campaign(options), source, *options.replay)};
-  const TrialRecord& record = records.front();
+  const TrialRecord record = run_trial(campaign(options), source, *options.replay);
   if (!options.save_model.empty()) write_model(options.save_model, drawn.model);
   if (!options.report.empty()) {
-    apps::write_file(options.report, html_report(configuration(options), records, summarise(records)),
-                     apps::Overwrite::replace);
+    const auto rounds = round_series(drawn.model.mdp, make_perturbation(drawn.model), examination_options(options));
+    apps::write_file(options.report, html_report(configuration(options), record, rounds), apps::Overwrite::replace);
   }
   if (options.json) {
     Json json = header(options);

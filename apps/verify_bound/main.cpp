@@ -21,9 +21,7 @@ constexpr const char* examples = R"(Examples:
 
 Exit codes: 0 holds, 1 a claim is violated, 2 bad usage or input, 3 undetermined, 4 an assumption of a claim fails)";
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   using namespace maximin;
   CLI::App program(
       "Checks what pessimism costs: every bound of the theory, on random Lipschitz MDPs or on a model of yours.",
@@ -37,4 +35,16 @@ int main(int argc, char** argv) {
     if (options.replay) return verify_bound::run_replay_command(options);
     return verify_bound::run_campaign_command(options);
   });
+}
+
+}  // namespace
+
+/// verify_bound: does the bound hold, on which models is it informative, how tight is it?
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    maximin::apps::complain("verify_bound", error.what());
+    return maximin::apps::ExitCode::internal_error;
+  }
 }

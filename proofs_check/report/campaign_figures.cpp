@@ -112,7 +112,7 @@ std::string scatter_panel(const Claim& c, const GapAgainstBound& data, const Axi
 std::string how_to_read_scatter(bool zero_gaps, bool violations, bool strays) {
   std::string html = R"(<div class="reading"><h3>How to read these</h3>
 <div class="key-row"><svg class="plot" viewBox="0 0 30 28" aria-hidden="true"><g class="marks good"><circle cx="15" cy="14" r="6"/></g></svg>
-<span>a model on which the bound says something: it is below span(R)/(1-γ), the trivial bound</span></div>
+<span>a model on which the bound says something: it is below γ span(R)/(1-γ), the trivial bound</span></div>
 <div class="key-row"><svg class="plot" viewBox="0 0 30 28" aria-hidden="true"><path class="specks plain" style="stroke-width:12" d="M15 14h0"/></svg>
 <span>a model on which it is vacuous: true, and useless</span></div>
 )";
@@ -342,7 +342,7 @@ std::string scatter_figure(const Records& records) {
                                      : "that no point lies above the diagonal, and how far below it most lie";
   return figure(
       "Each point is one model. Across: what the bound allows. Up: the gap that was measured. Both are divided by the "
-      "trivial bound span(R)/(1-γ), so that models of every size share one picture. <b>See</b> " +
+      "trivial bound γ span(R)/(1-γ), so that models of every size share one picture. <b>See</b> " +
           see + "; and which models lie in the tinted region, where the bound says something.",
       pictures, "grid");
 }

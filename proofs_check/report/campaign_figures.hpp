@@ -17,7 +17,7 @@ inline constexpr std::size_t most_marks = 600;       ///< informative ones, with
 inline constexpr std::size_t most_violations = 300;  ///< crosses
 inline constexpr std::size_t most_specks = 1500;     ///< vacuous ones, without
 
-/// What one bound came to on every model, in units of the trivial bound span(R)/(1-gamma).
+/// What one bound came to on every model, in units of the trivial bound gamma span(R)/(1-gamma).
 struct GapAgainstBound {
   std::vector<Mark> informative, vacuous, violated;  ///< x the bound, y the gap; 0 where it is not above the slack
   long no_span = 0;                                  ///< left out: constant rewards, nothing can be lost

@@ -65,7 +65,7 @@ std::string upper_limit_sentence(const CampaignSummary& s) {
 }
 
 std::string informative_sentence(const CampaignSummary& s) {
-  return fmt::format("At least one bound says something, being below the trivial span(R)/(1-γ), on {} of them ({}).",
+  return fmt::format("At least one bound says something, being below the trivial γ span(R)/(1-γ), on {} of them ({}).",
                      count(s.any_informative), percent(s.any_informative, s.trials));
 }
 
@@ -112,7 +112,7 @@ std::string verdict(const CampaignSummary& s, long asked, const Replay& replay) 
         "warn",
         {fmt::format("No violation, and nothing verified: every bound was vacuous on {}.",
                      s.trials == 1 ? "the only model" : "all " + count(s.trials) + " models"),
-         "A bound at or above the trivial span(R)/(1-γ) holds whatever is done. Ask for a smaller eps, γ or l_p.",
+         "A bound at or above the trivial γ span(R)/(1-γ) holds whatever is done. Ask for a smaller eps, γ or l_p.",
          rest});
   }
   const bool clean = exit_code(s, s.trials >= asked) == ExitCode::holds;
@@ -189,7 +189,7 @@ std::string claims_section(const CampaignSummary& s, const Replay& replay) {
          "round, pair of states and action. Tightness is the largest left / right among them, less the certified "
          "numerical error: at 1 the inequality is attained, above 1 it fails. A bound is informative on a model where "
          "it "
-         "lies below span(R)/(1-γ).</p>\n"
+         "lies below γ span(R)/(1-γ).</p>\n"
          "<div class=\"scroll\"><table class=\"claims\"><thead><tr><th>claim</th><th>models "
          "checked</th><th>violated</th>"
          "<th>informative</th><th>tightness, median</th><th>99th "

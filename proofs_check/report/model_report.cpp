@@ -33,8 +33,8 @@ std::string names_where(Condition condition) {
 std::string informative_sentence(const Examination& e) {
   const std::string telling = names_where([&](const Claim& c) { return c.is_bound && e.informative(c.id); });
   if (telling.empty())
-    return "Every bound is vacuous here: at or above the trivial span(R)/(1-γ) it holds whatever is done.";
-  return fmt::format("Informative, being below the trivial span(R)/(1-γ) = {}: {}.", number(e.trivial), telling);
+    return "Every bound is vacuous here: at or above the trivial γ span(R)/(1-γ) it holds whatever is done.";
+  return fmt::format("Informative, being below the trivial γ span(R)/(1-γ) = {}: {}.", number(e.trivial), telling);
 }
 
 std::string verdict(const Examination& e) {
@@ -207,7 +207,7 @@ std::string model_facts(const Examination& e) {
                 {"K, the same in total variation", number(e.constants.k_tv.value)},
                 {"R", fmt::format("from {} to {}", number(e.constants.r_min), number(e.constants.r_max_signed))},
                 {"L*, Lipschitz constant of Q*", number(e.lipschitz_of_q_star)},
-                {"span(R)/(1-γ), the trivial bound", number(e.trivial)},
+                {"γ span(R)/(1-γ), the trivial bound", number(e.trivial)},
                 {"pessimistic Q-iteration", fate_of(e)},
                 {"policy pairs met", count(e.pairs)},
                 {"limsup of the gap", e.fate == Fate::undetermined ? "unknown" : number(e.gap)},

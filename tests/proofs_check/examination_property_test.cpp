@@ -87,7 +87,7 @@ RC_GTEST_PROP(Examination, AgreesWithAnIndependentCalculation, (const Model<doub
   const double bound_e = 2 * subject.eps * subject.g * l_star / (1 - subject.g);
   RC_ASSERT(same(subject, found.check(ClaimId::e_test_time).right, bound_e));
   RC_ASSERT(same(subject, found.lipschitz_of_q_star, l_star));
-  RC_ASSERT(same(subject, found.trivial, subject.c.span / (1 - subject.g)));
+  RC_ASSERT(same(subject, found.trivial, subject.g * subject.c.span / (1 - subject.g)));
   RC_ASSERT(found.informative(ClaimId::e_test_time) == (found.check(ClaimId::e_test_time).right < found.trivial));
   // Near-ties of Q* may be broken differently by a Q* that is off by rounding; then E is about another policy.
   const bool clear_cut = [&] {

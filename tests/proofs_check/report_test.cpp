@@ -102,7 +102,7 @@ TrialRecord record(long trial, double right = 0.5, double share = 0.2) {
   e.eps = e.radius = rng.uniform(0.01, 0.5);
   e.constants.l_r.value = rng.uniform(0.1, 2);
   e.constants.span = rng.uniform(0.5, 2);
-  e.trivial = e.constants.span / (1 - e.discount);
+  e.trivial = e.discount * e.constants.span / (1 - e.discount);
   e.fate = trial % 10 == 3 ? Fate::cycles : Fate::settled;
   e.period = e.fate == Fate::cycles ? 3 : 1;
   e.iterations = 100;

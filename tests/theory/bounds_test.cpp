@@ -29,7 +29,7 @@ TYPED_TEST(Bounds, ByHand) {
   EXPECT_EQ(bounds::theorem_1_one_sided<Scalar>(half, 26), Scalar(104)) << "4 * 26";
   EXPECT_EQ(bounds::test_time_pessimism<Scalar>(2, half, 13), Scalar(52)) << "26 / (1/2)";
   EXPECT_EQ(bounds::belief<Scalar>(4, half, 13), Scalar(104)) << "4 * 13 / (1/2)";
-  EXPECT_EQ(bounds::trivial<Scalar>(half, 6), Scalar(12));
+  EXPECT_EQ(bounds::trivial<Scalar>(half, 6), Scalar(6));
 }
 
 TYPED_TEST(Bounds, FiniteNByHandAndInTheLimit) {
