@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <maximin/tabular/belief_game.hpp>
+#include <maximin/tabular/certified.hpp>
 #include <maximin/tabular/optimal_attack.hpp>
 #include <maximin/tabular/policy_evaluation.hpp>
 #include <maximin/tabular/policy_iteration.hpp>
@@ -61,16 +62,19 @@ class Examiner {
       assumption_1_fails();
       return std::move(result_);
     }
+    poll();
     optimal_ = policy_iteration(mdp_);
     result_.lipschitz_of_q_star = lipschitz_constant(optimal_.q, perturbation_.metric()).value;
     set_constants();
     iterate();
     Gap limit;
     const bool known = limit_of_gaps(limit);
+    poll();
     theorem_1(limit, known);
     strengthening_a(limit, known);
     strengthening_b(limit, known);
     strengthening_e();
+    poll();
     strengthening_f();
     return std::move(result_);
   }
@@ -182,6 +186,10 @@ class Examiner {
 
   // ---- What the claims share ----
 
+  void poll() const {
+    if (options_.stop && *options_.stop) throw Interrupted();
+  }
+
   Check* wanted(ClaimId id) { return options_.wants(id) ? &result_.check(id) : nullptr; }
 
   /// One instance, with the error of its sides and the rounding of the formulas. A slack that is not small against what
@@ -205,6 +213,7 @@ class Examiner {
           observe(check, std::abs(q(s, a) - q(t, a)), right, 2 * error, n, {s, t, a});
       }
     }
+    if (check.verdict == Verdict::not_asked) check.observe(0, 0, 0, n);  // no two states to compare: holds of itself
   }
 
   void at_the_limit(ClaimId id, bool known, double left, double right, double error, const Place& place) {
@@ -255,6 +264,11 @@ class Examiner {
     delta_tv_ = bounds::delta(eps, gamma_, bounds::lipschitz_of_q_tv(gamma_, c.l_r.value, c.k_tv.value, c.span));
     d_0_ = std::max(0.0, optimal_.q.maxCoeff());
     u_0_ = std::max(0.0, -optimal_.q.minCoeff());
+    const double largest =
+        std::max(bounds::theorem_1(gamma_, delta_printed_sound_), bounds::theorem_1(gamma_, delta_tv_));
+    if (!std::isfinite(largest)) {
+      throw InputError("eps: so large, or the Lipschitz constants, that the bounds overflow; expected a smaller eps");
+    }
     rounding_ = 1e-14 * static_cast<double>(mdp_.states() + 10) * c.r_max / (1 - gamma_);
   }
 
@@ -278,6 +292,7 @@ class Examiner {
   void iterate() {
     PessimisticQIterationOptions<double> iteration;
     iteration.max_iterations = options_.max_iterations;
+    iteration.max_period = options_.max_period;
     iteration.tie = options_.tie;
     run_ = pessimistic_q_iteration<double>(
         mdp_, perturbation_, iteration,
@@ -291,6 +306,7 @@ class Examiner {
 
   /// Everything that is claimed of round n.
   void round(long n, const Table& q, int pair, const PolicyPair& policies) {
+    poll();
     compose(policies.policy, policies.attack, composed_);
     const Gap gap = gap_of(pair, policies, n);
     bellman_pair(mdp_, composed_, q, values_, next_);
@@ -361,6 +377,7 @@ Examination examine(const FiniteMdp<double>& mdp, const Perturbation<double>& pe
     throw InputError(
         fmt::format("perturbation: of {} states, expected the model's {}", perturbation.states(), mdp.states()));
   }
+  const MacQueenBound<double> finite_values(mdp);  // refuses rewards whose values overflow
   return Examiner(mdp, perturbation, options).run();
 }
 

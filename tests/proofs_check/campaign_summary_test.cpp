@@ -75,6 +75,7 @@ TEST(CampaignSummary, CountsVerdictsFatesAndRegimes) {
   EXPECT_EQ(s.first_violation, 1);
   EXPECT_EQ(s.undetermined, 1);
   EXPECT_EQ(s.assumption_failures, 1);
+  EXPECT_EQ(s.decided, 3);
   EXPECT_EQ(s.settled, 2);
   EXPECT_EQ(s.cycles, 1);
   EXPECT_EQ(s.fate_undetermined, 2);
@@ -103,16 +104,23 @@ TEST(CampaignSummary, UpperLimitOnViolationsByTheirDistribution) {
   CampaignSummary s;
   EXPECT_EQ(s.violation_upper_limit(), 1) << "nothing seen, nothing known";
   for (const long trials : {1L, 10L, 59L, 2000L}) {
-    s.trials = trials;
+    s.trials = s.decided = trials;
     EXPECT_NEAR(s.violation_upper_limit(), 1 - std::pow(0.05, 1 / static_cast<double>(trials)), 1e-12);
   }
   EXPECT_NEAR(s.violation_upper_limit(), 0.00149674, 1e-8) << "0 of 2000: about three in two thousand";
   // k of n: the p at which k or fewer come up with probability 5 percent.
-  s.trials = 10;
+  s.trials = s.decided = 10;
   s.violations = 1;
   const double p = s.violation_upper_limit();
   EXPECT_NEAR(std::pow(1 - p, 10) + 10 * p * std::pow(1 - p, 9), 0.05, 1e-9);
   s.violations = 10;
+  EXPECT_EQ(s.violation_upper_limit(), 1);
+  // Models on which something stayed open say nothing.
+  s.trials = 2000;
+  s.violations = 0;
+  s.decided = 59;
+  EXPECT_NEAR(s.violation_upper_limit(), 1 - std::pow(0.05, 1 / 59.0), 1e-12);
+  s.decided = 0;
   EXPECT_EQ(s.violation_upper_limit(), 1);
 }
 

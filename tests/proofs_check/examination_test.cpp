@@ -84,14 +84,44 @@ TEST(Check, AViolationIsNotForgotten) {
   EXPECT_EQ(broken.n, 2);
 }
 
+TEST(Check, WhatIsUndecidedIsNotMadeGoodByWhatHolds) {
+  Check check;
+  check.observe(1, 4, 0);
+  check.undecided();
+  EXPECT_EQ(check.verdict, Verdict::undetermined);
+  check.observe(1, 4, 0);
+  EXPECT_EQ(check.verdict, Verdict::undetermined);
+  check.observe(5, 4, 0);
+  EXPECT_EQ(check.verdict, Verdict::violated);
+  check.undecided();
+  EXPECT_EQ(check.verdict, Verdict::violated);
+}
+
+/// With one state there are no two to compare: Lemma 1 was asked and holds, it was not left out.
+TEST(Examine, EveryClaimIsDecidedOnASingleState) {
+  FiniteMdpBuilder<double> b(1, 2, 0.5);
+  b.transition(0, 0, 0, 1).transition(0, 1, 0, 1).reward(0, 1, 1);
+  const auto found = examine(std::move(b).build(), on_line<double>({0}, 1));
+  for (const Claim& c : claims()) EXPECT_EQ(found.check(c.id).verdict, Verdict::holds) << c.name;
+}
+
+/// States that no path joins: nothing is claimed of them either.
+TEST(Examine, EveryClaimIsDecidedOnIslands) {
+  FiniteMdpBuilder<double> b(2, 1, 0.5);
+  b.transition(0, 0, 0, 1).transition(1, 0, 1, 1).reward(1, 0, 1);
+  const auto found = examine(std::move(b).build(), Perturbation<double>::from_neighbourhoods({{0}, {1}}));
+  for (const Claim& c : claims()) EXPECT_EQ(found.check(c.id).verdict, Verdict::holds) << c.name;
+}
+
 TEST(Examine, TwinsThatDifferFailAnAssumption) {
   FiniteMdpBuilder<double> b(3, 1, 0.5);
   b.transition(0, 0, 0, 1).transition(1, 0, 1, 1).transition(2, 0, 2, 1);
   const auto mdp = std::move(b).build();
   const auto found = examine(mdp, on_line<double>({0, 1, 1}, 1));
-  EXPECT_EQ(found.failed_assumption,
-            "Assumption 1: states 1 and 2 are at distance 0 but their transitions for action 0 differ, so no Lipschitz "
-            "constant exists");
+  EXPECT_EQ(
+      found.failed_assumption,
+      "Assumption 1: states 1 and 2 are at distance 0, or as good as, but their transitions for action 0 differ, so "
+      "no Lipschitz constant exists");
   for (const Check& check : found.checks) EXPECT_EQ(check.verdict, Verdict::assumption_fails);
   EXPECT_FALSE(found.any(Verdict::violated));
 }
