@@ -174,6 +174,9 @@ class UmbReader {
     const auto declared = system_.find("#choice-actions");
     const std::uint64_t actions = declared ? declared->count("number of actions") : 0;
     constexpr std::string_view values_path = "actions/choices/values.bin";
+    if (actions > options_.limits.pairs) {  // a count near 2^64 would wrap where offsets add one to it
+      declared->fail(fmt::format("{} actions are too many, expected at most {}", actions, options_.limits.pairs));
+    }
     if (actions == 0 || entries_.find(values_path) == entries_.end()) return {};
     const UmbArray values = array(values_path, choices_, 4);
     const std::vector<std::string> strings = read_strings("actions/choices/", actions);

@@ -110,6 +110,14 @@ TEST(Umb, NamesTheEntryAtFault) {
   EXPECT_EQ(error(entries),
             "m.umb: 1000000000000000000 states and 1 actions are too many, expected at most 5000000 (state, action) "
             "pairs");
+  entries = small_model();
+  auto& actions = entries["index.json"];
+  actions.replace(actions.find("\"#choice-actions\":2"), 19, "\"#choice-actions\":18446744073709551615");
+  entries["actions/choices/string-mapping.bin"].clear();
+  entries["actions/choices/strings.bin"].clear();
+  EXPECT_EQ(error(entries),
+            "m.umb: index.json: $['transition-system']['#choice-actions']: 18446744073709551615 actions are too many, "
+            "expected at most 5000000");
 }
 
 }  // namespace
