@@ -316,6 +316,12 @@ class CassandraReader {
     const auto match = rewards_.match(a, s, target);
     if (!match.depends_on_observation()) return reward.add(weight, match.value(0));
     const auto& row = observed_.row(target * actions_ + a);
+    observed_rewards_ += row.size();
+    if (observed_rewards_ > options_.limits.expansions) {
+      source_.fail(match.line(), fmt::format("rewards that depend on observations need more than {} terms, expected "
+                                             "fewer",
+                                             options_.limits.expansions));
+    }
     const Scalar sum = sum_of(row);
     const auto defect = defect_of(sum);
     if (defect && !(*defect <= slack())) {
@@ -339,6 +345,7 @@ class CassandraReader {
   bool start_given_ = false;
   bool start_scaled_ = false;
   std::size_t expansions_ = 0;
+  std::size_t observed_rewards_ = 0;  // terms summed over observations
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ struct ReadLimits {
   std::size_t bytes = std::size_t{256} << 20;  ///< size of a file, unpacked
   std::size_t pairs = 5'000'000;               ///< |S||A|
   std::size_t transitions = 10'000'000;        ///< stored transitions, all rows together
-  std::size_t expansions = 100'000'000;        ///< entries written by wildcards and matrices (Cassandra)
+  std::size_t expansions = 100'000'000;        ///< Cassandra: entries written by wildcards; terms in rewards by o
 };
 
 /// What to do with a model whose probabilities are intervals.

@@ -1,17 +1,30 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace maximin::internal {
 
 /// The `R:` lines of a Cassandra file: R(a, s, s', o), where later lines override earlier ones and any of the four may
 /// be a wildcard.
+///
+/// At most one rule is kept for each (a, s, s', o), wildcards included, so that looking a reward up takes a time that
+/// does not grow with the number of lines.
 template <class Scalar>
 class CassandraRewards {
+  /// The rules of one (a, s, s'), wildcards included: the latest for every observation, and the later ones for single
+  /// observations.
+  struct Bucket {
+    std::int64_t of_all = -1;
+    std::map<std::size_t, std::uint32_t> of_one;
+  };
+
  public:
   static constexpr std::int64_t all = -1;
 
@@ -33,36 +46,28 @@ class CassandraRewards {
   class Match {
    public:
     /// Whether the reward depends on the observation.
-    bool depends_on_observation() const {
-      for (std::size_t i = 0; i < count_; ++i) {
-        for (const std::uint32_t rule : *buckets_[i]) {
-          if (rewards_->rules_[rule].depends_on_observation()) return true;
-        }
-      }
-      return false;
-    }
+    bool depends_on_observation() const { return line() != 0; }
 
     /// R(a, s, s', o).
     Scalar value(std::size_t observation) const {
       std::int64_t latest = -1;
       for (std::size_t i = 0; i < count_; ++i) {
-        for (auto rule = buckets_[i]->rbegin(); rule != buckets_[i]->rend() && *rule > latest; ++rule) {
-          const std::int64_t o = rewards_->rules_[*rule].observation;
-          if (o != all && o != static_cast<std::int64_t>(observation)) continue;
-          latest = *rule;
-          break;
-        }
+        const auto one = buckets_[i]->of_one.find(observation);
+        latest = std::max(latest, one == buckets_[i]->of_one.end() ? buckets_[i]->of_all : std::int64_t{one->second});
       }
       return latest < 0 ? Scalar(0)
                         : rewards_->value_of(static_cast<std::size_t>(latest), state_, target_, observation);
     }
 
-    /// The line of a rule that depends on the observation.
+    /// The line of a rule that depends on the observation; 0 when none does.
     std::size_t line() const {
       for (std::size_t i = 0; i < count_; ++i) {
-        for (const std::uint32_t rule : *buckets_[i]) {
-          if (rewards_->rules_[rule].depends_on_observation()) return rewards_->rules_[rule].line;
+        const Bucket& bucket = *buckets_[i];
+        if (bucket.of_all >= 0) {
+          const Rule& rule = rewards_->rules_[static_cast<std::size_t>(bucket.of_all)];
+          if (rule.depends_on_observation()) return rule.line;
         }
+        if (!bucket.of_one.empty()) return rewards_->rules_[bucket.of_one.begin()->second].line;
       }
       return 0;
     }
@@ -70,7 +75,7 @@ class CassandraRewards {
    private:
     friend class CassandraRewards;
     const CassandraRewards* rewards_ = nullptr;
-    std::array<const std::vector<std::uint32_t>*, 8> buckets_{};
+    std::array<const Bucket*, 8> buckets_{};
     std::size_t count_ = 0;
     std::size_t state_ = 0, target_ = 0;
   };
@@ -83,9 +88,14 @@ class CassandraRewards {
 
   /// Adds a rule whose values have been added.
   void add_rule(const Rule& rule) {
-    std::vector<std::uint32_t>& bucket = buckets_[key(rule.action, rule.state, rule.target)];
-    if (rule.observation == all) bucket.clear();  // hides every earlier rule for the same (a, s, s')
-    bucket.push_back(static_cast<std::uint32_t>(rules_.size()));
+    Bucket& bucket = buckets_[key(rule.action, rule.state, rule.target)];
+    const auto index = static_cast<std::uint32_t>(rules_.size());
+    if (rule.observation == all) {
+      bucket.of_one.clear();  // hides every earlier rule for the same (a, s, s')
+      bucket.of_all = index;
+    } else {
+      bucket.of_one.insert_or_assign(static_cast<std::size_t>(rule.observation), index);
+    }
     rules_.push_back(rule);
   }
 
@@ -132,7 +142,7 @@ class CassandraRewards {
   std::size_t states_, observations_;
   std::vector<Rule> rules_;
   std::vector<Scalar> values_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> buckets_;
+  std::unordered_map<std::uint64_t, Bucket> buckets_;
 };
 
 }  // namespace maximin::internal

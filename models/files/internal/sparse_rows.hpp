@@ -49,6 +49,7 @@ class SparseRows {
   void compact(std::size_t row) {
     std::vector<Entry>& entries = rows_[row];
     const std::size_t before = entries.size();
+    if (is_compact(entries)) return;
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& x, const Entry& y) { return x.first < y.first; });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -59,6 +60,13 @@ class SparseRows {
     }
     entries.resize(kept);
     stored_ -= before - kept;
+  }
+
+  static bool is_compact(const std::vector<Entry>& entries) {
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (entries[i].second == Scalar(0) || (i > 0 && entries[i].first <= entries[i - 1].first)) return false;
+    }
+    return true;
   }
 
   std::size_t width_;

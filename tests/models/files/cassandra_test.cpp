@@ -108,6 +108,22 @@ TEST(Cassandra, ObservationsAreIndexedByTheEndState) {
   EXPECT_EQ(model.mdp.reward(0, 0), 5);
 }
 
+TEST(Cassandra, TheLastRewardLineForAnObservationCounts) {
+  const std::string head = "observations: 2\nT: * identity\nO: * uniform\n";
+  const auto reward = [&](const std::string& lines) { return read(two_by_two(head + lines)).mdp.reward(0, 0); };
+  EXPECT_EQ(reward("R: * : * : * : 0 2\nR: * : * : * : 1 4\nR: * : * : * : 0 6"), 5);
+  EXPECT_EQ(reward("R: * : * : * : 0 2\nR: * : * : * : * 4\nR: * : * : * : 1 6"), 5);
+  EXPECT_EQ(reward("R: a : s0 : * : 0 2\nR: * : * : * : * 4\nR: a : s0 : * : 1 6"), 5);
+}
+
+// Every repeated line was once looked at for every (a, s, s', o): more than a minute.
+TEST(Cassandra, RepeatedRewardLinesCostNothing) {
+  std::string text =
+      "discount: 0.5\nvalues: reward\nstates: 60\nactions: 8\nobservations: 60\nT: * uniform\nO: * uniform\n";
+  for (int i = 0; i < 40'000; ++i) text += "R:*:*:*:0 1\n";
+  EXPECT_NEAR(read(text).mdp.reward(59, 7), 1.0 / 60, 1e-12);
+}
+
 TEST(Cassandra, RewardsThatSeeNoObservationNeedNone) {
   const Model<double> model = read(two_by_two("observations: 2\nT: * identity\nR: * : * : * : * 1"));
   EXPECT_EQ(model.mdp.reward(1, 1), 1);
@@ -160,6 +176,14 @@ TEST(Cassandra, WildcardsCannotCostHours) {
   const std::string text = "discount: 0.5\nvalues: reward\nstates: 40\nactions: 1\nT: * : * : * 0.025";
   EXPECT_EQ(testing::error_of([&] { read(text, options); }),
             "m.pomdp:5: wildcards and matrices write more than 1000 entries, expected fewer");
+  const std::string observed =
+      "discount: 0.5\nvalues: reward\nstates: 4\nactions: 2\nobservations: 2\nT: * uniform\nO: * uniform\n"
+      "R: * : * : * : 0 1";
+  options.limits.expansions = 63;
+  EXPECT_EQ(testing::error_of([&] { read(observed, options); }),
+            "m.pomdp:8: rewards that depend on observations need more than 63 terms, expected fewer");
+  options.limits.expansions = 64;
+  EXPECT_EQ(read(observed, options).mdp.reward(0, 0), 0.5);
   options = {};
   options.limits.transitions = 1000;
   EXPECT_EQ(testing::error_of([&] { read(text, options); }), "m.pomdp:5: more than 1000 transitions, expected fewer");
