@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <variant>
@@ -22,7 +23,8 @@ class Metric {
   using Points = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   /// Distances between points: row s of `points` (|S| x d, d >= 1) is x_s.
-  /// Throws InputError when a coordinate is not finite or there is none.
+  /// Throws InputError when a coordinate is not finite, there is none, or they are so far apart that a distance could
+  /// overflow. l2 distances neither overflow nor underflow where the distance itself does not.
   static Metric from_points(Points points, Norm norm) {
     if (points.rows() < 1 || points.cols() < 1) throw InputError("points: empty, expected one point per state");
     if constexpr (!is_exact_v<Scalar>) {
@@ -30,6 +32,10 @@ class Metric {
         if (!points.row(s).allFinite()) {
           throw InputError("points[" + std::to_string(s) + "]: not finite, expected finite coordinates");
         }
+      }
+      const Points box = points.colwise().maxCoeff() - points.colwise().minCoeff();
+      if (!box.allFinite() || !is_finite_length(box, norm)) {
+        throw InputError("points: so far apart that distances overflow, expected smaller coordinates");
       }
     }
     return Metric(Embedded{std::move(points), norm});
@@ -61,6 +67,9 @@ class Metric {
     return std::visit([&](const auto& m) { return m.distance(s, t); }, form_);
   }
 
+  /// Whether the metric was made by `discrete`.
+  bool is_discrete() const { return std::holds_alternative<Discrete>(form_); }
+
   /// The points, where the metric was made from points; otherwise null.
   const Points* points() const {
     const auto* embedded = std::get_if<Embedded>(&form_);
@@ -71,6 +80,11 @@ class Metric {
   Norm norm() const { return std::get<Embedded>(form_).norm; }
 
  private:
+  static bool is_finite_length(const Points& row, Norm norm) {
+    const Scalar length = Embedded::length([&](Eigen::Index i) { return row(0, i); }, row.cols(), norm);
+    return length <= std::numeric_limits<Scalar>::max();
+  }
+
   struct Embedded {
     Points points;
     Norm norm;
@@ -78,23 +92,38 @@ class Metric {
     State states() const { return static_cast<State>(points.rows()); }
 
     Scalar distance(State s, State t) const {
-      using std::abs;
-      Scalar total(0);
-      for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const Scalar gap = abs(Scalar(points(s, i) - points(t, i)));
-        if (norm == Norm::l1) total += gap;
-        if (norm == Norm::l2) total += gap * gap;
-        if (norm == Norm::linf && gap > total) total = gap;
-      }
-      return norm == Norm::l2 ? root(total) : total;
+      return length([&](Eigen::Index i) { return Scalar(points(s, i) - points(t, i)); }, points.cols(), norm);
     }
 
-    static Scalar root(const Scalar& square) {
+    /// The norm of the vector with those `size` components.
+    template <class Component>
+    static Scalar length(Component component, Eigen::Index size, Norm norm) {
+      using std::abs;
+      Scalar total(0), largest(0);
+      for (Eigen::Index i = 0; i < size; ++i) {
+        const Scalar gap = abs(component(i));
+        if (norm == Norm::l1) total += gap;
+        if (norm == Norm::l2) total += gap * gap;
+        if (gap > largest) largest = gap;
+      }
+      if (norm == Norm::linf) return largest;
+      return norm == Norm::l1 ? total : root(total, largest, component, size);
+    }
+
+    /// The root of a sum of squares. A sum that overflowed, or lost digits to underflow, is taken again with components
+    /// of at most 1.
+    template <class Component>
+    static Scalar root(const Scalar& squares, const Scalar& largest, Component component, Eigen::Index size) {
       if constexpr (is_exact_v<Scalar>) {
         throw InputError("norm: l2 distances are not rational, expected l1 or linf with exact arithmetic");
       } else {
+        using Limits = std::numeric_limits<Scalar>;
         using std::sqrt;
-        return sqrt(square);
+        constexpr Scalar safe = Limits::min() / (Limits::epsilon() * Limits::epsilon());
+        if ((squares >= safe && squares <= Limits::max()) || largest == Scalar(0)) return sqrt(squares);
+        Scalar scaled(0);
+        for (Eigen::Index i = 0; i < size; ++i) scaled += (component(i) / largest) * (component(i) / largest);
+        return largest * sqrt(scaled);
       }
     }
   };

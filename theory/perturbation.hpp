@@ -24,7 +24,13 @@ class Perturbation {
  public:
   using Ball = std::span<const State>;
 
-  /// The closed balls of radius eps >= 0. Throws InputError when eps is negative or not finite.
+  /// The most members that all balls together may have (1 GiB of neighbour lists).
+  static constexpr std::size_t max_members = std::size_t{1} << 28;
+  /// The most pairs of states whose distance is looked at: beyond 100,000 states a metric must be the discrete one.
+  static constexpr std::size_t max_pairs = 10'000'000'000;
+
+  /// The closed balls of radius eps >= 0. Throws InputError when eps is negative or not finite, and when the balls have
+  /// more than `max_members` members or the states more than `max_pairs` pairs, before memory or hours are spent.
   ///
   /// For an inexact scalar a state counts as inside when its distance exceeds eps by rounding only (a relative 1e-12),
   /// so that points 0.1 apart on a grid are neighbours at eps = 0.1. `radius()` tells the largest distance inside a
@@ -35,14 +41,10 @@ class Perturbation {
     Scalar limit = eps_;
     if constexpr (!is_exact_v<Scalar>) limit = eps_ * Scalar(1 + 1e-12);
     begin_.push_back(0);
-    for (State s = 0; s < metric_.states(); ++s) {
-      for (State t = 0; t < metric_.states(); ++t) {
-        const Scalar d = metric_.distance(s, t);
-        if (!(d <= limit) && s != t) continue;
-        neighbours_.push_back(t);
-        if (d > radius_) radius_ = d;
-      }
-      begin_.push_back(neighbours_.size());
+    if (metric_.is_discrete()) {
+      fill_discrete(limit);
+    } else {
+      fill(limit);
     }
   }
 
@@ -86,6 +88,42 @@ class Perturbation {
   }
 
  private:
+  void fill(const Scalar& limit) {
+    const auto n = static_cast<std::size_t>(metric_.states());
+    if (n > max_pairs / n) {
+      throw InputError("metric: " + std::to_string(n) + " states have more than " + std::to_string(max_pairs) +
+                       " pairs, expected a smaller model or the discrete metric");
+    }
+    for (State s = 0; s < metric_.states(); ++s) {
+      for (State t = 0; t < metric_.states(); ++t) {
+        const Scalar d = metric_.distance(s, t);
+        if (!(d <= limit) && s != t) continue;
+        neighbours_.push_back(t);
+        if (d > radius_) radius_ = d;
+      }
+      require_members(neighbours_.size());
+      begin_.push_back(neighbours_.size());
+    }
+  }
+
+  /// Distances are 0 and 1: a ball is its centre or everything.
+  void fill_discrete(const Scalar& limit) {
+    const auto n = static_cast<std::size_t>(metric_.states());
+    const bool everything = limit >= Scalar(1);
+    if (everything) require_members(n * n);
+    if (everything && n > 1 && Scalar(1) > radius_) radius_ = Scalar(1);
+    for (State s = 0; s < metric_.states(); ++s) {
+      for (State t = everything ? 0 : s; t < (everything ? metric_.states() : s + 1); ++t) neighbours_.push_back(t);
+      begin_.push_back(neighbours_.size());
+    }
+  }
+
+  void require_members(std::size_t members) const {
+    if (members <= max_members) return;
+    throw InputError("eps: the balls of " + std::to_string(metric_.states()) + " states have more than " +
+                     std::to_string(max_members) + " members, expected a smaller eps or model");
+  }
+
   static std::string at(std::size_t s) { return "neighbourhoods[" + std::to_string(s) + "]"; }
 
   static void check(const std::vector<std::vector<State>>& lists) {

@@ -40,6 +40,27 @@ TEST(Metric, OfPointsUnderEachNorm) {
   EXPECT_EQ(*l2.points(), corner_points());
 }
 
+TEST(Metric, L2NeitherOverflowsNorUnderflows) {
+  for (const double scale : {1e-310, 1e-200, 1e-150, 1.0, 1e150, 1e200, 1e307}) {
+    const auto metric = M::from_points(corner_points() * scale, Norm::l2);
+    EXPECT_NEAR(metric.distance(0, 1) / (scale * 5), 1, 1e-12) << scale;
+    EXPECT_EQ(metric.distance(1, 1), 0) << scale;
+    EXPECT_TRUE(std::isfinite(metric.distance(0, 1))) << scale;
+  }
+}
+
+TEST(Metric, RefusesPointsTooFarApart) {
+  M::Points points(2, 2);
+  points << 1e308, 1e308, 0, 0;
+  const std::string message = "points: so far apart that distances overflow, expected smaller coordinates";
+  EXPECT_EQ(complaint([&] { M::from_points(points, Norm::l1); }), message);
+  EXPECT_EQ(complaint([&] { M::from_points(points * 1.7, Norm::l2); }), message);
+  EXPECT_EQ(M::from_points(points, Norm::l2).distance(0, 1), std::sqrt(2) * 1e308);
+  EXPECT_EQ(M::from_points(points, Norm::linf).distance(0, 1), 1e308);
+  points << 1e308, 0, -1e308, 0;
+  EXPECT_EQ(complaint([&] { M::from_points(points, Norm::linf); }), message);
+}
+
 TEST(Metric, RefusesPointsThatAreNone) {
   EXPECT_EQ(complaint([] { M::from_points(M::Points(0, 2), Norm::l1); }),
             "points: empty, expected one point per state");

@@ -128,5 +128,24 @@ TEST(Perturbation, RefusesListsThatAreNoBalls) {
             "neighbourhoods: 10001 lists, expected at most 10000; give points and a norm instead");
 }
 
+TEST(Perturbation, OfTheDiscreteMetricHasOneStateOrAll) {
+  const auto balls = [](double eps) { return Perturbation<double>(Metric<double>::discrete(3), eps); };
+  EXPECT_EQ(members(balls(0.9), 1), std::vector<State>{1});
+  EXPECT_EQ(balls(0.9).radius(), 0.9);
+  EXPECT_EQ(members(balls(1), 1), (std::vector<State>{0, 1, 2}));
+  EXPECT_EQ(balls(1 - 1e-15).radius(), 1);
+  EXPECT_EQ(balls(7).radius(), 7);
+}
+
+TEST(Perturbation, RefusesBallsAndScansBeyondItsLimits) {
+  const auto discrete = [](double eps) { Perturbation<double>(Metric<double>::discrete(1'000'000), eps); };
+  EXPECT_EQ(complaint([&] { discrete(0.5); }), "accepted");
+  EXPECT_EQ(complaint([&] { discrete(1); }),
+            "eps: the balls of 1000000 states have more than 268435456 members, expected a smaller eps or model");
+  const auto points = [] { return Metric<double>::from_points(Metric<double>::Points::Zero(100'001, 1), Norm::linf); };
+  EXPECT_EQ(complaint([&] { Perturbation<double>(points(), 1.0); }),
+            "metric: 100001 states have more than 10000000000 pairs, expected a smaller model or the discrete metric");
+}
+
 }  // namespace
 }  // namespace maximin
