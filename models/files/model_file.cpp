@@ -92,7 +92,7 @@ Model<Scalar> load_model(const std::filesystem::path& path, const ReadOptions& o
     case Format::cassandra:
       return read_cassandra<Scalar>(bytes, file, options);
     case Format::prism:
-      return load_prism_explicit<Scalar>(path, options);
+      return read_prism_explicit_at<Scalar>(bytes, path, options);
     case Format::drn:
       return read_drn<Scalar>(bytes, file, options);
     case Format::csv:

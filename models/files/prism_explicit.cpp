@@ -1,6 +1,7 @@
 #include <maximin/models/files/prism_explicit.hpp>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -181,7 +182,7 @@ class TransitionsReader {
     if (read_count(source, lines.number(), "number of states", lines.words().front()) != states_) {
       lines.fail(fmt::format("{} states, expected {} as in the .tra file", lines.words().front(), states_));
     }
-    std::vector<std::pair<std::size_t, Scalar>> rewards;  // by branch
+    std::vector<TransitionReward> rewards;
     while (next_entry(lines)) {
       const std::vector<std::string_view>& words = lines.words();
       const std::size_t target = chain_ ? 1 : 2;
@@ -193,32 +194,48 @@ class TransitionsReader {
       const std::size_t count = table_.first_choice(s + 1) - first;
       const std::size_t k = chain_ ? 0 : read_index(source, lines.number(), "choice", words[1], count);
       const auto t = static_cast<State>(read_index(source, lines.number(), "state", words[target], states_));
-      rewards.emplace_back(branch_to(first + k, t, lines),
-                           read_number<Scalar>(source, lines.number(), "reward", words[target + 1]));
+      rewards.push_back(
+          {first + k, t, read_number<Scalar>(source, lines.number(), "reward", words[target + 1]), lines.number()});
     }
-    std::stable_sort(rewards.begin(), rewards.end(), [](auto& x, auto& y) { return x.first < y.first; });
-    average_rewards(rewards);
+    std::stable_sort(rewards.begin(), rewards.end(), [](const TransitionReward& x, const TransitionReward& y) {
+      return std::tie(x.choice, x.target) < std::tie(y.choice, y.target);
+    });
+    for (std::size_t i = 1; i < rewards.size(); ++i) {
+      if (rewards[i].choice != rewards[i - 1].choice || rewards[i].target != rewards[i - 1].target) continue;
+      source.fail(rewards[i].at, fmt::format("the reward to state {} is given twice, expected each transition once",
+                                             rewards[i].target));
+    }
+    for (Rewards next = rewards.cbegin(); next != rewards.cend();) next = average_rewards(source, next, rewards.end());
   }
 
-  std::size_t branch_to(std::size_t choice, State target, const TextLines& lines) const {
-    for (std::size_t b = table_.first_branch(choice); b < table_.first_branch(choice + 1); ++b) {
-      if (table_.branch_at(b).target == target) return b;
-    }
-    lines.fail(fmt::format("the choice has no transition to state {}, expected a transition of the .tra file", target));
-  }
+  struct TransitionReward {
+    std::size_t choice;
+    State target;
+    Scalar reward;
+    std::size_t at;
+  };
+  using Rewards = typename std::vector<TransitionReward>::const_iterator;
 
-  void average_rewards(const std::vector<std::pair<std::size_t, Scalar>>& rewards) {
-    auto next = rewards.begin();
-    for (std::size_t c = 0; c < table_.choices(); ++c) {
-      if (next == rewards.end() || next->first >= table_.first_branch(c + 1)) continue;
-      WeightedMean<Scalar> mean;
-      for (std::size_t b = table_.first_branch(c); b < table_.first_branch(c + 1); ++b) {
-        Scalar reward(0);
-        for (; next != rewards.end() && next->first == b; ++next) reward = next->second;
-        mean.add(table_.branch_at(b).probability.low, reward);
-      }
-      table_.choice(c).reward = mean.value();
+  /// Gives the choice at `next` the mean of its transitions' rewards; returns where the next choice's begin.
+  Rewards average_rewards(const Source& source, Rewards next, Rewards end) {
+    const std::size_t choice = next->choice;
+    std::vector<std::size_t> branches;
+    for (std::size_t b = table_.first_branch(choice); b < table_.first_branch(choice + 1); ++b) branches.push_back(b);
+    const auto target = [&](std::size_t b) { return table_.branch_at(b).target; };
+    std::sort(branches.begin(), branches.end(), [&](auto x, auto y) { return target(x) < target(y); });
+    WeightedMean<Scalar> mean;
+    for (const std::size_t b : branches) {
+      const bool listed = next != end && next->choice == choice && next->target == target(b);
+      mean.add(table_.branch_at(b).probability.low, listed ? next->reward : Scalar(0));
+      if (listed) ++next;
     }
+    if (next != end && next->choice == choice) {
+      source.fail(next->at, fmt::format("the choice has no transition to state {}, expected a transition of the .tra "
+                                        "file",
+                                        next->target));
+    }
+    table_.choice(choice).reward = mean.value();
+    return next;
   }
 
   TextSource source_;
@@ -245,9 +262,14 @@ Model<Scalar> read_prism_explicit(std::string_view text, std::string_view file_n
 
 template <class Scalar>
 Model<Scalar> load_prism_explicit(const std::filesystem::path& tra, const ReadOptions& options) {
+  return read_prism_explicit_at<Scalar>(unpacked_file_bytes(tra, options.limits.bytes), tra, options);
+}
+
+template <class Scalar>
+Model<Scalar> read_prism_explicit_at(std::string_view text, const std::filesystem::path& tra,
+                                     const ReadOptions& options) {
   std::vector<std::string> notes;
   const PrismCompanions companions = find_prism_companions(tra, options, notes);
-  const std::string text = file_bytes(tra, options.limits.bytes);
   Model<Scalar> model = read_prism_explicit<Scalar>(text, tra.string(), options, companions);
   model.notes.insert(model.notes.begin(), notes.begin(), notes.end());
   return model;
@@ -255,6 +277,7 @@ Model<Scalar> load_prism_explicit(const std::filesystem::path& tra, const ReadOp
 
 template Model<double> read_prism_explicit(std::string_view, std::string_view, const ReadOptions&,
                                            const PrismCompanions&);
+template Model<double> read_prism_explicit_at(std::string_view, const std::filesystem::path&, const ReadOptions&);
 template Model<double> load_prism_explicit(const std::filesystem::path&, const ReadOptions&);
 
 }  // namespace maximin

@@ -32,9 +32,15 @@ template <class Scalar>
 Model<Scalar> read_prism_explicit(std::string_view text, std::string_view file_name, const ReadOptions& options = {},
                                   const PrismCompanions& companions = {});
 
-/// The same, with the files found beside the .tra file: NAME.srew and NAME.trew, or NAME1.srew, NAME2.srew, ... of
-/// several reward structures (`options.reward_model` picks one by number or name), NAME.lab and NAME.sta.
+/// The same, with the files found beside NAME.tra or NAME.tra.gz: NAME.srew and NAME.trew, or NAME1.srew, NAME2.srew,
+/// ... of several reward structures (`options.reward_model` picks one by number or name), NAME.lab and NAME.sta. Each
+/// may be packed by gzip and then may end in .gz.
 template <class Scalar>
 Model<Scalar> load_prism_explicit(const std::filesystem::path& tra, const ReadOptions& options = {});
+
+/// The same, for a .tra file whose unpacked text has been read: `tra` is not read again, so it may be a pipe.
+template <class Scalar>
+Model<Scalar> read_prism_explicit_at(std::string_view text, const std::filesystem::path& tra,
+                                     const ReadOptions& options = {});
 
 }  // namespace maximin

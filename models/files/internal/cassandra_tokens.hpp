@@ -25,7 +25,7 @@ bool is_reserved_in_cassandra(std::string_view word);
 class CassandraTokens {
  public:
   /// Throws InputError, as does `take`, at a character outside the grammar.
-  CassandraTokens(const Source& source, std::string_view text) : source_(source), rest_(text) { read(); }
+  CassandraTokens(const Source& source, std::string_view text) : source_(source), rest_(without_mark(text)) { read(); }
 
   /// The next token; of kind end after the last.
   const CassandraToken& peek() const { return next_; }

@@ -66,7 +66,7 @@ class ChoiceTable {
   void begin_state() { state_begin_.push_back(choices_.size()); }
   /// Begins the next choice of the state. An empty label is none.
   void begin_choice(std::string_view label, std::size_t at) {
-    choices_.push_back({at, intern(label), branches_.size(), Scalar(0)});
+    choices_.push_back({at, intern(label, at), branches_.size(), Scalar(0)});
   }
   /// Adds a branch to the choice.
   void branch(State target, Interval<Scalar> probability, std::size_t at) {
@@ -140,10 +140,12 @@ class ChoiceTable {
   }
 
  private:
-  std::size_t intern(std::string_view label) {
+  std::size_t intern(std::string_view label, std::size_t at) {
     if (label.empty()) return no_label;
     const auto found = label_index_.find(label);
     if (found != label_index_.end()) return found->second;
+    if (!is_name(label))
+      source_.fail(at, fmt::format("{}: expected a name without control characters", in_quotes(label)));
     labels_.emplace_back(label);
     label_index_.emplace(labels_.back(), labels_.size() - 1);
     return labels_.size() - 1;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 
+#include <maximin/models/files/internal/gzip.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::internal {
@@ -26,6 +27,11 @@ std::string file_bytes(const std::filesystem::path& path, std::size_t limit) {
   }
   if (in.bad()) throw InputError(name + ": reading failed, expected a readable model file");
   return bytes;
+}
+
+std::string unpacked_file_bytes(const std::filesystem::path& path, std::size_t limit) {
+  std::string bytes = file_bytes(path, limit);
+  return is_gzip(bytes) ? gunzip(TextSource(path.string()), bytes, limit) : bytes;
 }
 
 }  // namespace maximin::internal

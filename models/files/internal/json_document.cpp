@@ -40,7 +40,11 @@ class JsonDocument::Builder : public nlohmann::json_sax<nlohmann::json> {
     std::string what = error.what();
     if (const auto prefix = what.find("] "); prefix != std::string::npos) what.erase(0, prefix + 2);
     if (what.starts_with("parse error at line")) what.erase(0, what.find(": ") + 2);
-    if (what.find("expected") == std::string::npos) what += ", expected a number that a double can hold";
+    constexpr int out_of_range = 406;
+    if (what.find("expected") == std::string::npos) {
+      what +=
+          error.id == out_of_range ? ", expected a number that a double can hold" : ", expected JSON as in RFC 8259";
+    }
     for (char& c : what) {
       if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7F) c = '?';
     }

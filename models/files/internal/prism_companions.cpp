@@ -12,15 +12,23 @@ namespace fs = std::filesystem;
 
 std::optional<NamedText> read_if_there(const fs::path& path, const ReadOptions& options) {
   std::error_code code;
-  if (!fs::exists(path, code)) return std::nullopt;
-  return NamedText{file_bytes(path, options.limits.bytes), path.string()};
+  for (const fs::path& there : {path, fs::path(path.string() + ".gz")}) {
+    if (fs::exists(there, code)) return NamedText{unpacked_file_bytes(there, options.limits.bytes), there.string()};
+  }
+  return std::nullopt;
+}
+
+/// NAME of NAME.tra and of NAME.tra.gz.
+fs::path stem_of(fs::path tra) {
+  if (tra.extension() == ".gz") tra.replace_extension();
+  return tra.replace_extension();
 }
 
 /// The name in a comment such as: # Reward structure "time"
 std::string structure_name(const std::optional<NamedText>& file) {
   if (!file) return {};
   constexpr std::string_view intro = "# Reward structure \"";
-  const std::string_view text = file->text;
+  const std::string_view text = without_mark(file->text);
   if (!text.starts_with(intro)) return {};
   const std::string_view rest = text.substr(intro.size());
   return std::string(rest.substr(0, std::min(rest.find_first_of("\"\n"), rest.size())));
@@ -34,8 +42,7 @@ struct RewardStructure {
 
 std::vector<RewardStructure> reward_structures(const fs::path& tra, const ReadOptions& options) {
   constexpr int most = 99;
-  fs::path stem = tra;
-  stem.replace_extension();
+  const fs::path stem = stem_of(tra);
   std::vector<RewardStructure> found;
   for (int i = 0; i <= most; ++i) {
     const std::string number = i == 0 ? "" : std::to_string(i);
@@ -82,13 +89,13 @@ PrismCompanions find_prism_companions(const fs::path& tra, const ReadOptions& op
     }
   }
   const auto named = [&](const fs::path& path) {
-    return NamedText{file_bytes(path, options.limits.bytes), path.string()};
+    return NamedText{unpacked_file_bytes(path, options.limits.bytes), path.string()};
   };
   if (!options.state_rewards.empty()) companions.state_rewards = named(options.state_rewards);
   if (!options.transition_rewards.empty()) companions.transition_rewards = named(options.transition_rewards);
-  fs::path beside = tra;
-  companions.labels = read_if_there(beside.replace_extension(".lab"), options);
-  companions.states = read_if_there(beside.replace_extension(".sta"), options);
+  const std::string stem = stem_of(tra).string();
+  companions.labels = read_if_there(stem + ".lab", options);
+  companions.states = read_if_there(stem + ".sta", options);
   return companions;
 }
 

@@ -36,13 +36,14 @@ std::vector<Scalar> read_initial_states(const NamedText& lab, std::uint64_t stat
 /// The valuations of a .sta file, e.g. "(0,1)", one per state.
 std::vector<std::string> read_state_names(const NamedText& sta, std::uint64_t states);
 
-/// The rewards of a .srew file, one per state; what is not listed is 0.
+/// The rewards of a .srew file, one per state; what is not listed is 0. A state listed twice is an error.
 template <class Scalar>
 std::vector<Scalar> read_state_rewards(const NamedText& srew, std::uint64_t states) {
   const TextSource source(srew.file);
   source.require_text(srew.text);
   TextLines lines(source, srew.text);
   std::vector<Scalar> rewards;
+  std::vector<bool> given;
   while (lines.next_filled()) {
     const std::vector<std::string_view>& words = lines.words();
     if (words.front().front() == '#') continue;
@@ -52,10 +53,13 @@ std::vector<Scalar> read_state_rewards(const NamedText& srew, std::uint64_t stat
         lines.fail(fmt::format("{} states, expected {} as in the .tra file", words[0], states));
       }
       rewards.assign(states, Scalar(0));
+      given.assign(states, false);
       continue;
     }
-    rewards[read_index(source, lines.number(), "state", words[0], states)] =
-        read_number<Scalar>(source, lines.number(), "reward", words[1]);
+    const std::size_t s = read_index(source, lines.number(), "state", words[0], states);
+    if (given[s]) lines.fail(fmt::format("the reward of state {} is given twice, expected each state once", s));
+    given[s] = true;
+    rewards[s] = read_number<Scalar>(source, lines.number(), "reward", words[1]);
   }
   if (rewards.empty()) lines.fail("no sizes, expected a line 'states entries'");
   return rewards;

@@ -14,6 +14,13 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
 }
 
+/// Whether the UTF-8 sequence acts on a terminal or on the text around it instead of being shown.
+bool is_active(std::string_view sequence) {
+  if (sequence.size() == 1) return is_control(sequence[0]);
+  if (sequence.size() == 2) return sequence[0] == '\xC2' && static_cast<unsigned char>(sequence[1]) < 0xA0;
+  return (sequence >= "\u202A" && sequence <= "\u202E") || (sequence >= "\u2066" && sequence <= "\u2069");
+}
+
 }  // namespace
 
 void Source::fail(std::size_t at, std::string_view message) const {
@@ -36,11 +43,16 @@ void TextSource::require_text(std::string_view text) const {
   }
 }
 
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view mark = "\uFEFF";
+  return text.starts_with(mark) ? text.substr(mark.size()) : text;
+}
+
 bool is_name(std::string_view text) {
   bool good = !text.empty();
   while (good && !text.empty()) {
     const std::size_t length = utf8_length(text);
-    good = length > 0 && !is_control(text.front());
+    good = length > 0 && !is_active(text.substr(0, length));
     text.remove_prefix(length);
   }
   return good;
@@ -71,14 +83,13 @@ std::string in_quotes(std::string_view token) {
   std::string out = "'";
   while (!token.empty() && out.size() <= longest) {
     const std::size_t length = utf8_length(token);
-    const auto byte = static_cast<unsigned char>(token.front());
-    if (length == 0 || is_control(token.front())) {
-      out += fmt::format("\\x{:02x}", byte);
-      token.remove_prefix(1);
-    } else {
-      out += token.substr(0, length);
-      token.remove_prefix(length);
+    const std::string_view character = token.substr(0, std::max<std::size_t>(length, 1));
+    token.remove_prefix(character.size());
+    if (length > 0 && !is_active(character)) {
+      out += character;
+      continue;
     }
+    for (const char byte : character) out += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
   }
   return out + (token.empty() ? "'" : "...'");
 }

@@ -41,13 +41,17 @@ class TextSource : public Source {
   void require_text(std::string_view text) const;
 };
 
-/// The token in quotes, cut to a readable length, with control characters and stray bytes escaped.
+/// The token in quotes, cut to a readable length, with stray bytes and the characters that `is_name` refuses escaped.
 std::string in_quotes(std::string_view token);
 
 /// The length of the UTF-8 sequence at the front of `text`, or 0 when there is none.
 std::size_t utf8_length(std::string_view text);
 
-/// Whether the text may name a state or an action: UTF-8, not empty, without control characters.
+/// The text without the byte order mark that some editors put before UTF-8.
+std::string_view without_mark(std::string_view text);
+
+/// Whether the text may name a state or an action: UTF-8, not empty, without control characters (C0 and C1) and without
+/// the characters that turn the direction of the text after them (U+202A to U+202E, U+2066 to U+2069).
 bool is_name(std::string_view text);
 
 /// The candidate nearest to `word` by edit distance, or an empty string when none is near.

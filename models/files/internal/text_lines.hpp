@@ -9,10 +9,11 @@
 
 namespace maximin::internal {
 
-/// Walks over the lines of a text. "\n", "\r\n" and a missing end of the last line are all the same.
+/// Walks over the lines of a text. "\n", "\r\n" and a missing end of the last line are all the same; a byte
+/// order mark before the first is skipped.
 class TextLines {
  public:
-  TextLines(const Source& source, std::string_view text) : source_(source), rest_(text) {}
+  TextLines(const Source& source, std::string_view text) : source_(source), rest_(without_mark(text)) {}
 
   /// Goes to the next line; false at the end of the text.
   bool next();

@@ -157,6 +157,11 @@ TEST(BadInput, MaximinJson) {
            "m.json: $.state_names[1]: '': empty or with control characters, expected a name"},
           {json_with("state_names", R"(["a","b\u0007"])"),
            R"(m.json: $.state_names[1]: 'b\x07': empty or with control characters, expected a name)"},
+          {json_with("state_names", R"(["a","b\u202e"])"),
+           R"(m.json: $.state_names[1]: 'b\xe2\x80\xae': empty or with control characters, expected a name)"},
+          {json_with("name", R"("\ud800")"),
+           "m.json:8: not JSON: syntax error while parsing value - invalid string: surrogate U+D800..U+DBFF must be "
+           "followed by U+DC00..U+DFFF; last read: '\"\\ud800\"', expected JSON as in RFC 8259"},
           {json_with("action_names", R"(["a","b"])"), "m.json: $.action_names: length 2, expected 1: one name each"},
           {json_with("start", "[1]"), "m.json: $.start: length 1, expected 2: a state, or one probability per state"},
           {json_with("start", "[0.5,0.4]"),

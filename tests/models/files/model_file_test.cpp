@@ -2,10 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+#include <zlib.h>
+
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 
+#include <maximin/models/files/prism_explicit.hpp>
 #include <maximin/models/make_perturbation.hpp>
 
 #include "model_file_testing.hpp"
@@ -45,6 +51,19 @@ const std::string cassandra = "discount: 0.5\nvalues: reward\nstates: 1\nactions
 const std::string tra = "1 1 1\n0 0 0 1\n";
 const std::string drn = "@type: MDP\n@parameters\n\n@reward_models\nr\n@nr_states\n1\n@model\nstate 0 [3]\n\t0 : 1\n";
 const std::string csv = "0,0,0,1,3\n";
+
+/// The text in a gzip file, not compressed.
+std::string stored_gzip(const std::string& text) {
+  const auto little_endian = [](std::size_t value, int bytes) {
+    std::string out;
+    for (int i = 0; i < bytes; ++i) out.push_back(static_cast<char>(value >> (8 * i) & 0xFF));
+    return out;
+  };
+  const auto length = text.size();
+  const auto checksum = crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(length));
+  return std::string("\x1f\x8b\x08\0\0\0\0\0\0\x03\x01", 11) + little_endian(length, 2) +
+         little_endian(~length & 0xFFFF, 2) + text + little_endian(checksum, 4) + little_endian(length, 4);
+}
 
 TEST_F(ModelFile, FormatIsToldByExtension) {
   for (const auto& [name, content] : std::vector<std::pair<std::string, std::string>>{{"a.json", json},
@@ -90,6 +109,51 @@ TEST_F(ModelFile, PrismRewardStructuresGoByNumberOrName) {
   options = {};
   options.state_rewards = write("other.srew", "1 1\n0 7\n");
   EXPECT_EQ(load_model<double>(path, options).mdp.reward(0, 0), 7);
+}
+
+TEST_F(ModelFile, AnyFileMayBePackedByGzip) {
+  // 'tra' and a .srew file, "1 1\n0 3\n", stored in gzip without compression
+  const std::string reward = "1 1\n0 3\n";
+  const auto path = write("m.tra.gz", stored_gzip(tra));
+  EXPECT_EQ(load_model<double>(path).mdp.reward(0, 0), 0);
+  write("m.srew.gz", stored_gzip(reward));
+  EXPECT_EQ(load_model<double>(path).mdp.reward(0, 0), 3);
+  write("m.tra.srew", "1 1\n0 5\n");  // not a companion of m.tra.gz
+  EXPECT_EQ(load_model<double>(path).mdp.reward(0, 0), 3);
+  write("m.srew", "1 1\n0 4\n");
+  EXPECT_EQ(load_model<double>(path).mdp.reward(0, 0), 4);
+  EXPECT_EQ(load_prism_explicit<double>(path).mdp.reward(0, 0), 4);
+  ReadOptions options;
+  options.state_rewards = folder_ / "m.srew.gz";
+  EXPECT_EQ(load_model<double>(path, options).mdp.reward(0, 0), 3);
+  EXPECT_EQ(load_model<double>(write("m.json.gz", stored_gzip(json))).mdp.reward(0, 0), 3);
+}
+
+// A pipe can be read once only: a second reading would wait for ever.
+TEST_F(ModelFile, PipesAreReadOnce) {
+  for (const char* name : {"pipe", "pipe.tra"}) {
+    const std::filesystem::path path = folder_ / name;
+    ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    std::thread writer([&] { std::ofstream(path) << tra; });
+    EXPECT_EQ(load_model<double>(path).mdp.states(), 1);
+    writer.join();
+  }
+}
+
+TEST_F(ModelFile, ByteOrderMarksAreSkipped) {
+  const std::string mark = "\uFEFF";
+  write("m.srew", mark + "1 1\n0 3\n");
+  for (const auto& [name, content] : std::vector<std::pair<std::string, std::string>>{{"m.json", json},
+                                                                                      {"g.json", gymnasium},
+                                                                                      {"m.mdp", cassandra},
+                                                                                      {"m.tra", tra},
+                                                                                      {"m.drn", drn},
+                                                                                      {"m.csv", csv},
+                                                                                      {"c", cassandra},
+                                                                                      {"d", drn},
+                                                                                      {"e", csv}}) {
+    EXPECT_EQ(load_model<double>(write(name, mark + content)).mdp.reward(0, 0), 3) << name;
+  }
 }
 
 TEST_F(ModelFile, TellsWhatCannotBeRead) {

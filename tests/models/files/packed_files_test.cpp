@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <string>
 #include <vector>
@@ -73,8 +74,12 @@ TEST(Gzip, UnpacksMembersOneAfterTheOther) {
 TEST(Gzip, SkipsNamesAndCommentsInTheHeader) {
   std::string named = fixed;
   named[3] = 4 | 8 | 16 | 2;
-  named.insert(10, std::string("\2\0xyname\0comment\0\0\0", 19));
+  named.insert(10, std::string("\2\0xyname\0comment\0", 17));
+  const auto checksum = crc32(0, reinterpret_cast<const Bytef*>(named.data()), 27);
+  named.insert(27, {static_cast<char>(checksum & 0xFF), static_cast<char>(checksum >> 8 & 0xFF)});
   EXPECT_EQ(unpack(named), "hello hello hello\n");
+  named[27] = static_cast<char>(named[27] ^ 1);
+  EXPECT_EQ(testing::error_of([&] { unpack(named); }), "f.gz: the gzip data is damaged, expected an undamaged file");
 }
 
 TEST(Gzip, StopsAtTheLimit) {

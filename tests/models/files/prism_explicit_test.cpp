@@ -1,5 +1,6 @@
 #include <maximin/models/files/prism_explicit.hpp>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "model_file_testing.hpp"
@@ -31,6 +32,42 @@ TEST(PrismExplicit, ReadsRewardsLabelsAndStates) {
   EXPECT_EQ(model.mdp.reward(1, 0), 5);
   EXPECT_EQ(model.start, (std::vector<double>{0, 1}));
   EXPECT_EQ(model.state_names, (std::vector<std::string>{"(7)", "(8)"}));
+}
+
+TEST(PrismExplicit, TransitionRewardsComeInAnyOrder) {
+  PrismCompanions companions;
+  companions.transition_rewards = {"2 2 3\n1 0 1 7\n0 0 1 8\n0 0 0 4\n", "m.trew"};
+  const Model<double> model = read("2 2 3\n0 0 1 0.75\n0 0 0 0.25\n1 0 1 1\n", companions);
+  EXPECT_EQ(model.mdp.reward(0, 0), 0.25 * 4 + 0.75 * 8);
+  EXPECT_EQ(model.mdp.reward(1, 0), 7);
+}
+
+TEST(PrismExplicit, RefusesRewardsGivenTwiceOrOfNothing) {
+  const auto error = [](const PrismCompanions& companions) {
+    return testing::error_of([&] { read("2 2 2\n0 0 0 1\n1 0 1 1\n", companions); });
+  };
+  PrismCompanions companions;
+  companions.state_rewards = {"2 2\n1 5\n0 1\n1 5\n", "m.srew"};
+  EXPECT_EQ(error(companions), "m.srew:4: the reward of state 1 is given twice, expected each state once");
+  companions = {};
+  companions.transition_rewards = {"2 2 2\n1 0 1 4\n0 0 0 4\n1 0 1 5\n", "m.trew"};
+  EXPECT_EQ(error(companions), "m.trew:4: the reward to state 1 is given twice, expected each transition once");
+  companions.transition_rewards = {"2 2 1\n0 0 1 4\n", "m.trew"};
+  EXPECT_EQ(error(companions),
+            "m.trew:2: the choice has no transition to state 1, expected a transition of the .tra file");
+}
+
+// What a terminal would act on instead of showing it.
+TEST(PrismExplicit, RefusesActionNamesThatAreNoText) {
+  for (const std::string active : {"\u0085", "\u009B", "\u202A", "\u202E", "\u2066", "\u2069"}) {
+    const std::string said = testing::error_of([&] { read("1 1 1\n0 0 0 1 a" + active + "\n"); });
+    std::string escaped = "a";
+    for (const unsigned char byte : active) escaped += fmt::format("\\x{:02x}", byte);
+    EXPECT_EQ(said, "m.tra:2: '" + escaped + "': expected a name without control characters");
+  }
+  for (const std::string shown : {"\u00A0", "\u2029", "\u202F", "\u2065", "\u206A", "\u00E9"}) {
+    EXPECT_EQ(read("1 1 1\n0 0 0 1 a" + shown + "\n").action_names, std::vector<std::string>{"a" + shown});
+  }
 }
 
 TEST(PrismExplicit, ReadsThePomdpsMdp) {
