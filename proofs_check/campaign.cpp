@@ -70,6 +70,8 @@ long run_campaign(const Campaign& campaign, const ModelSource& source, const Rec
         if (trial >= campaign.trials) return;
         reorder.take(run_trial(campaign, source, trial));
       }
+    } catch (const Interrupted&) {
+      return;  // the trial in progress is given up; it was never finished
     } catch (...) {
       std::call_once(first_failure, [&] { failure = std::current_exception(); });
       failed = true;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <exception>
 #include <limits>
 #include <optional>
 #include <set>
@@ -15,12 +17,20 @@
 
 namespace maximin {
 
+/// An examination was asked to stop before it was done.
+class Interrupted : public std::exception {
+ public:
+  const char* what() const noexcept override { return "interrupted"; }
+};
+
 struct ExaminationOptions {
   Reading reading = Reading::corrected;
   long max_iterations = 20'000;                ///< of pessimistic Q-iteration
   long max_belief_positions = 20'000;          ///< for claim F; more make it undetermined
   std::optional<std::set<ClaimId>> only = {};  ///< absent: all
+  long max_period = 64;                        ///< the longest cycle of policy pairs that is looked for
   TieBreak tie = TieBreak::lowest_index;
+  const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: the examination ends with Interrupted
 
   bool wants(ClaimId id) const { return !only || only->contains(id); }
 };
@@ -56,7 +66,8 @@ struct Examination {
 };
 
 /// Checks every claim on one model, the finite-n ones at every n, against certified values.
-/// Throws InputError when model and perturbation do not match.
+/// Throws InputError when model and perturbation do not match, or rewards, constants or eps are so large that a bound
+/// overflows; Interrupted when `options.stop` is raised.
 Examination examine(const FiniteMdp<double>& mdp, const Perturbation<double>& perturbation,
                     const ExaminationOptions& options = {});
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/file.h>
 
 #include <maximin/theory/error.hpp>
 
@@ -47,9 +48,14 @@ std::string first_difference(const Json& old_header, const Json& new_header) {
 }
 
 Json parse_line(const fs::path& path, std::size_t number, const std::string& line) {
-  Json json = Json::parse(line, nullptr, false);
+  const std::string where = fmt::format("{}:{}", path.string(), number);
+  const auto not_too_deep = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > 16) throw InputError(where + ": nested too deep, expected a line written by --trials-out");
+    return true;
+  };
+  Json json = Json::parse(line, not_too_deep, false);
   if (!json.is_discarded()) return json;
-  throw InputError(fmt::format("{}:{}: not JSON, expected a line written by --trials-out", path.string(), number));
+  throw InputError(where + ": not JSON, expected a line written by --trials-out");
 }
 
 TrialRecord parse_record(const fs::path& path, std::size_t number, const std::string& line, long expected) {
@@ -75,6 +81,9 @@ TrialFile::TrialFile(fs::path path, const char* mode) : path_(std::move(path)), 
     throw InputError(
         fmt::format("{}: {}, expected a file that can be written{}", path_.string(), std::strerror(reason), hint));
   }
+  if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw InputError(fmt::format("{}: another run is writing it, expected one run at a time", path_.string()));
+  }
 }
 
 TrialFile TrialFile::create(const fs::path& path, const Json& header) {
@@ -88,28 +97,31 @@ TrialFile TrialFile::resume(const fs::path& path, const Json& header) {
   if (!fs::is_regular_file(path)) {
     throw InputError(fmt::format("{}: not a plain file, expected the file of an interrupted run", path.string()));
   }
-  const Lines lines = complete_lines(path);
-  std::vector<TrialRecord> finished;
+  TrialFile file(path, "r+");  // locked before it is read
+  file.read(header);
+  return file;
+}
+
+void TrialFile::read(const Json& header) {
+  const Lines lines = complete_lines(path_);
   if (!lines.text.empty()) {
-    const Json old_header = parse_line(path, 1, lines.text.front());
+    const Json old_header = parse_line(path_, 1, lines.text.front());
     if (old_header != header) {
-      throw InputError(fmt::format("{}:1: another campaign ({}), expected the same options as now", path.string(),
+      throw InputError(fmt::format("{}:1: another campaign ({}), expected the same options as now", path_.string(),
                                    first_difference(old_header, header)));
     }
-    for (std::size_t i = 1; i < lines.text.size(); ++i) {
-      finished.push_back(parse_record(path, i + 1, lines.text[i], static_cast<long>(i) - 1));
-    }
   }
-  TrialFile file(path, "a");
+  for (std::size_t i = 1; i < lines.text.size(); ++i) {
+    finished_.push_back(parse_record(path_, i + 1, lines.text[i], static_cast<long>(i) - 1));
+  }
   std::error_code failure;
-  fs::resize_file(path, lines.bytes, failure);
+  fs::resize_file(path_, lines.bytes, failure);
   if (failure) {
-    throw InputError(fmt::format("{}: {}, expected a file that can be cut back to its last whole line", path.string(),
+    throw InputError(fmt::format("{}: {}, expected a file that can be cut back to its last whole line", path_.string(),
                                  failure.message()));
   }
-  if (lines.text.empty()) file.write_line(header);
-  file.finished_ = std::move(finished);
-  return file;
+  std::fseek(file_.get(), 0, SEEK_END);
+  if (lines.text.empty()) write_line(header);
 }
 
 void TrialFile::append(const TrialRecord& record) {

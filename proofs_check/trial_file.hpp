@@ -20,7 +20,8 @@ class TrialFile {
   static TrialFile create(const std::filesystem::path& path, const nlohmann::ordered_json& header);
 
   /// Opens the file of an interrupted run and reads what it holds; starts a new one when there is none.
-  /// Throws InputError when its header differs from `header` or a record is damaged or out of order.
+  /// Throws InputError when its header differs from `header`, a record is damaged or out of order, or another run has
+  /// it open.
   static TrialFile resume(const std::filesystem::path& path, const nlohmann::ordered_json& header);
 
   /// What the file held when it was resumed, in order from trial 0.
@@ -35,6 +36,7 @@ class TrialFile {
   };
 
   TrialFile(std::filesystem::path path, const char* mode);
+  void read(const nlohmann::ordered_json& header);
   void write_line(const nlohmann::ordered_json& line);
 
   std::filesystem::path path_;

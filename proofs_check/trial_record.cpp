@@ -2,7 +2,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <type_traits>
 #include <utility>
 
 #include <maximin/theory/error.hpp>
@@ -31,7 +34,25 @@ auto value_named(const Table& table, const std::string& name) {
 
 /// A number, or NaN for null.
 double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+  if (json.is_null()) return std::numeric_limits<double>::quiet_NaN();
+  if (!json.is_number()) throw InputError("a number is missing");
+  return json.get<double>();
+}
+
+/// A field of exactly the wanted kind and range: what is edited by hand must not slip through a conversion.
+template <class T>
+T field_of(const Json& json, const char* name) {
+  const Json& value = json.at(name);
+  if constexpr (std::is_same_v<T, bool>) {
+    if (value.is_boolean()) return value.get<bool>();
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (value.is_string()) return value.get<std::string>();
+  } else if (value.is_number_integer()) {
+    const auto number = value.get<std::int64_t>();
+    if (number >= -1 && number <= static_cast<std::int64_t>(std::numeric_limits<T>::max()))
+      return static_cast<T>(number);
+  }
+  throw InputError(std::string(name) + ": not of its kind or out of range");
 }
 
 /// JSON knows no infinity; null reads back as NaN, so both must print alike.
@@ -54,14 +75,15 @@ Json check_to_json(const Check& check) {
 
 Check check_from_json(const Json& json) {
   Check check;
-  check.verdict = value_named(verdicts, json.at("verdict").get<std::string>());
+  check.verdict = value_named(verdicts, field_of<std::string>(json, "verdict"));
   check.left = number(json.at("left"));
   check.right = number(json.at("right"));
   check.slack = number(json.at("slack"));
-  check.n = json.at("n").get<long>();
-  check.place = {json.at("state").get<State>(), json.at("other_state").get<State>(), json.at("action").get<Action>()};
+  check.n = field_of<long>(json, "n");
+  check.place = {field_of<State>(json, "state"), field_of<State>(json, "other_state"),
+                 field_of<Action>(json, "action")};
   check.least_right = number(json.at("least_right"));
-  check.instances = json.at("instances").get<long>();
+  check.instances = field_of<long>(json, "instances");
   return check;
 }
 
@@ -134,16 +156,16 @@ Json to_json(const TrialRecord& record) {
 
 TrialRecord trial_record_from_json(const Json& json) {
   TrialRecord record;
-  record.trial = json.at("trial").get<long>();
-  record.family = json.at("family").get<std::string>();
+  record.trial = field_of<long>(json, "trial");
+  record.family = field_of<std::string>(json, "family");
   for_each_field(record.found, [&]<class T>(const char* name, T& field) {
     if constexpr (std::is_same_v<T, double>) {
       field = number(json.at(name));
     } else {
-      field = json.at(name).get<T>();
+      field = field_of<T>(json, name);
     }
   });
-  record.found.fate = value_named(fates, json.at("fate").get<std::string>());
+  record.found.fate = value_named(fates, field_of<std::string>(json, "fate"));
   for (const auto& [name, check] : json.at("claims").items()) {
     const auto id = find_claim(name);
     if (!id) throw InputError("'" + name + "' is not a claim");

@@ -53,17 +53,17 @@ std::string conclusion(const CampaignSummary& s, std::uint64_t seed, bool comple
       return fmt::format("VIOLATED on {} of {} models.{}\n{}", s.violations, s.trials, interrupted, lines);
     }
     case ExitCode::undetermined:
-      if (s.trials > 0 && s.vacuous()) {
-        return fmt::format(
-            "UNDETERMINED: every bound was vacuous on every model (at or above gamma span(R)/(1-gamma)), so this "
-            "campaign verifies nothing. Ask for smaller eps, gamma or l_p, or --family informative.{}\n",
-            interrupted);
-      }
       if (s.some_claim_never_decided()) {
         return fmt::format(
             "UNDETERMINED: no violation in {} models, but a claim that was asked for was decided on none of them; see "
             "--max-iterations, --max-positions.{}\n",
             s.trials, interrupted);
+      }
+      if (s.trials > 0 && s.vacuous()) {
+        return fmt::format(
+            "UNDETERMINED: every bound was vacuous on every model (at or above gamma span(R)/(1-gamma)), so this "
+            "campaign verifies nothing. Ask for smaller eps, gamma or l_p, or --family informative.{}\n",
+            interrupted);
       }
       return fmt::format("UNDETERMINED: {} models and no violation.{}\n", s.trials, interrupted);
     case ExitCode::assumption_fails:

@@ -66,11 +66,30 @@ std::optional<TrialFile> trial_file(const Options& options) {
                         : TrialFile::create(options.trials_out, first_line);
 }
 
+/// Refuses records that this campaign cannot have written.
+void check_finished(const Options& options, const std::vector<TrialRecord>& records) {
+  if (static_cast<long>(records.size()) > options.trials) {
+    throw InputError(fmt::format("{}: {} records, expected at most --trials {}", options.trials_out, records.size(),
+                                 options.trials));
+  }
+  const ExaminationOptions examination = examination_options(options);
+  for (const TrialRecord& record : records) {
+    for (const Claim& c : claims()) {
+      if (examination.wants(c.id) == (record.found.check(c.id).verdict != Verdict::not_asked)) continue;
+      throw InputError(fmt::format("{}:{}: claim {} is {} there, expected the claims of this campaign",
+                                   options.trials_out, record.trial + 2, c.name,
+                                   examination.wants(c.id) ? "not" : "also"));
+    }
+  }
+}
+
 /// All records of the campaign, those of the file first; fewer than asked for when interrupted.
 std::vector<TrialRecord> gather(const Options& options, const ModelSource& source, std::optional<TrialFile>& file) {
   Campaign c = campaign(options);
+  c.examination.stop = &apps::stop_on_interrupt();
   std::vector<TrialRecord> records;
   if (file) records = file->finished();
+  check_finished(options, records);
   c.first = static_cast<long>(records.size());
   long violations =
       std::count_if(records.begin(), records.end(), [](const auto& r) { return r.found.any(Verdict::violated); });
@@ -111,7 +130,8 @@ Json summary_json(const Options& options, const CampaignSummary& summary, bool c
 int run_campaign_command(const Options& options) {
   if (!options.save_model.empty()) throw InputError("--save-model: of which trial? expected --replay TRIAL beside it");
   const ModelSource source = model_source(options);
-  {  // a first model at once, so that bad restrictions end the run before any file is made
+  examination_options(options);  // refuses bad claims before any file is made
+  {                              // a first model at once, so that bad restrictions end the run before any file is made
     Stream rng(options.seed, 0);
     source(rng);
   }
@@ -121,6 +141,12 @@ int run_campaign_command(const Options& options) {
   const CampaignSummary summary = summarise(records);
   const bool complete = static_cast<long>(records.size()) == options.trials;
 
+  for (const Claim& c : claims()) {
+    const long trial = summary.claims[static_cast<std::size_t>(c.id)].first_violation;
+    if (trial < 0) continue;
+    Stream rng(options.seed, static_cast<std::uint64_t>(trial));
+    save_violation(options, source(rng).model, trial, c.id);
+  }
   if (options.json) {
     apps::print(apps::json_text(summary_json(options, summary, complete)));
   } else {
@@ -129,12 +155,6 @@ int run_campaign_command(const Options& options) {
   if (!options.report.empty()) {
     apps::write_file(options.report, html_report(configuration(options), records, summary, replay_options(options)),
                      apps::Overwrite::replace);
-  }
-  for (const Claim& c : claims()) {
-    const long trial = summary.claims[static_cast<std::size_t>(c.id)].first_violation;
-    if (trial < 0) continue;
-    Stream rng(options.seed, static_cast<std::uint64_t>(trial));
-    save_violation(options, source(rng).model, trial, c.id);
   }
   return static_cast<int>(exit_code(summary, complete));
 }
@@ -146,6 +166,9 @@ int run_replay_command(const Options& options) {
   const ModelSource source = model_source(options);
   Stream rng(options.seed, static_cast<std::uint64_t>(*options.replay));
   const DrawnModel drawn = source(rng);
+  if (!options.save_model.empty() && std::filesystem::exists(options.save_model)) {
+    throw InputError(fmt::format("--save-model: {} exists, expected a new name", options.save_model));
+  }
   const TrialRecord record = run_trial(campaign(options), source, *options.replay);
   if (!options.save_model.empty()) write_model(options.save_model, drawn.model);
   if (!options.report.empty()) {

@@ -28,6 +28,12 @@ void save_violation(const Options& options, Model<double> model, long trial, Cla
       return false;  // a step of the shrinking left no valid model, or one that is too hard to decide
     }
   };
+  if (!still_violates(model)) {
+    throw InputError(
+        fmt::format("trial {}: its record says that {} is violated, but its model does not violate it; expected "
+                    "a trials file that nobody has edited",
+                    trial, claim(id).name));
+  }
   const State states = model.mdp.states();
   model = shrink(std::move(model), still_violates);
   model.name = fmt::format("violates {} (seed {}, trial {})", claim(id).name, options.seed, trial);

@@ -270,5 +270,24 @@ TEST(NegativeControl, BIsOnlyTrueInTheLimitAndCNeedsTheStart) {
   EXPECT_EQ(judged(first_gap, bounds::finite_n(0.5, 0.0, 2.0, 0.0, 0)), Verdict::holds);
 }
 
+/// Two states next to each other, steep but nearly equal, must not hide a gross violation between two others: Lemma 1
+/// is looked at for every pair, not only for the steepest.
+TEST(NegativeControl, ASteepPairDoesNotHideAViolatedOne) {
+  FiniteMdpBuilder<double> b(5, 2, 0.5);
+  for (Action a = 0; a < 2; ++a) {
+    b.reward(1, a, -1).reward(2, a, -20).transition(2, a, 2, 1).transition(3, a, 3, 1);
+    b.transition(4, a, 3, 0.9999999999997).transition(4, a, 2, 3e-13);
+  }
+  b.transition(0, 0, 0, 1).transition(0, 1, 2, 1).transition(1, 1, 1, 1).transition(1, 0, 2, 1);
+  const auto mdp = std::move(b).build();
+  Metric<double>::Points points(5, 2);
+  points << 0, 0, 1, 0, 20, 0, 0, 50, 1e-13, 50;
+  const Perturbation<double> balls(Metric<double>::from_points(points, Norm::l1), 1.0);
+  const Check lemma = examine(mdp, balls, {.reading = Reading::paper}).check(ClaimId::lemma_1);
+  EXPECT_EQ(lemma.verdict, Verdict::violated);
+  EXPECT_NEAR(lemma.left, 21, 1e-9);
+  EXPECT_EQ(lemma.right, 1);
+}
+
 }  // namespace
 }  // namespace maximin

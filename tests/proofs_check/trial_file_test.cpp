@@ -90,6 +90,36 @@ TEST_F(TrialFiles, CannotBeMadeWhereThereIsNoFolder) {
   }
 }
 
+TEST_F(TrialFiles, HaveOneWriterAtATime) {
+  const auto records = small_records(1, std::set{ClaimId::e_test_time});
+  write_run(records);
+  const auto before = contents(path_);
+  TrialFile first = TrialFile::resume(path_, header_);
+  EXPECT_EQ(complaint([&] { TrialFile::resume(path_, header_); }),
+            path_.string() + ": another run is writing it, expected one run at a time");
+  EXPECT_EQ(contents(path_), before);
+}
+
+TEST_F(TrialFiles, NestedWithoutEndAreRefused) {
+  write(path_, std::string(3'000'000, '[') + "\n");
+  EXPECT_EQ(complaint([&] { TrialFile::resume(path_, header_); }),
+            path_.string() + ":1: nested too deep, expected a line written by --trials-out");
+}
+
+TEST_F(TrialFiles, NumbersOutOfRangeAreRefused) {
+  const auto records = small_records(1, std::set{ClaimId::e_test_time});
+  write_run(records);
+  for (const char* period : {"1e300", "-7", "true", "99999999999999999999"}) {
+    auto lines = lines_of(records);
+    auto edited = nlohmann::ordered_json::parse(lines[0]);
+    edited["period"] = nlohmann::ordered_json::parse(period);
+    write(path_, header_.dump() + '\n' + edited.dump() + '\n');
+    EXPECT_EQ(complaint([&] { TrialFile::resume(path_, header_); }),
+              path_.string() + ":2: period: not of its kind or out of range, expected a trial record")
+        << period;
+  }
+}
+
 /// A kill may come between any two bytes: whatever is left, resuming gives the bytes of an uninterrupted run.
 TEST_F(TrialFiles, ResumeAfterACutAtEveryByte) {
   const auto records = small_records(2, std::set{ClaimId::e_test_time});
