@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 
 #include <maximin/apps/common/program.hpp>
+#include <maximin/theory/error.hpp>
 
 namespace maximin::apps {
 
@@ -17,6 +20,20 @@ bool parse(const std::string& text, T& value) {
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   return error == std::errc() && stop == end;
+}
+
+/// The whole text as a number in decimal digits, if it is one. A leading zero is none: CLI11 reads it as octal.
+template <class T>
+bool parse_whole(const std::string& text, T& value) {
+  const std::size_t sign = text.starts_with('-') ? 1 : 0;
+  return parse(text, value) && (text.size() == sign + 1 || text[sign] != '0');
+}
+
+/// What to add to a refusal of a number that only its leading zero spoils.
+std::string leading_zero(const std::string& text) {
+  return text.size() > 1 && text[0] == '0' && text.find_first_not_of("0123456789") == std::string::npos
+             ? " without leading zeros"
+             : "";
 }
 
 std::string describe(const RealRange& range) {
@@ -43,9 +60,28 @@ CLI::Validator real_number(const RealRange& range) {
 CLI::Validator whole_number(long low, long high) {
   const auto check = [low, high](std::string& text) -> std::string {
     long n = 0;
-    if (parse(text, n) && n >= low && n <= high) return {};
-    if (high == std::numeric_limits<long>::max()) return fmt::format("{}, expected a whole number >= {}", text, low);
-    return fmt::format("{}, expected a whole number from {} to {}", text, low, high);
+    if (parse_whole(text, n) && n >= low && n <= high) return {};
+    if (high == std::numeric_limits<long>::max())
+      return fmt::format("{}, expected a whole number{} >= {}", text, leading_zero(text), low);
+    return fmt::format("{}, expected a whole number{} from {} to {}", text, leading_zero(text), low, high);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator seed_number() {
+  const auto check = [](std::string& text) -> std::string {
+    std::uint64_t n = 0;
+    if (parse_whole(text, n)) return {};
+    return fmt::format("{}, expected a whole number{} from 0 to 2^64-1", text, leading_zero(text));
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator existing_folder() {
+  const auto check = [](std::string& text) -> std::string {
+    std::error_code error;
+    if (std::filesystem::is_directory(text, error)) return {};
+    return fmt::format("{}: no such folder, expected one that exists", text);
   };
   return CLI::Validator(check, "");
 }
@@ -58,6 +94,14 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
                        near.empty() ? "" : fmt::format("; did you mean {}?", near));
   };
   return CLI::Validator(check, "");
+}
+
+void refuse_given(const CLI::App& app, const std::vector<std::string>& options, const std::string& where,
+                  const std::string& expected) {
+  for (const std::string& option : options) {
+    if (app.count(option) == 0) continue;
+    throw InputError(fmt::format("{}: has no effect {}, expected {}", option, where, expected));
+  }
 }
 
 }  // namespace maximin::apps

@@ -20,10 +20,21 @@ struct RealRange {
 /// Accepts a decimal number in the range.
 CLI::Validator real_number(const RealRange& range = {});
 
-/// Accepts a whole number from `low` to `high`, in digits.
+/// Accepts a whole number from `low` to `high`, in decimal digits without leading zeros, which would be read as octal.
 CLI::Validator whole_number(long low, long high = std::numeric_limits<long>::max());
+
+/// Accepts a seed: a whole number from 0 to 2^64-1, in decimal digits without leading zeros.
+CLI::Validator seed_number();
+
+/// Accepts the name of a folder that exists.
+CLI::Validator existing_folder();
 
 /// Accepts one of the words; refuses all others, naming the nearest.
 CLI::Validator one_of(const std::vector<std::string>& words);
+
+/// Refuses the options of the list that were given on the command line of `app`: "--seed: has no effect beside --model,
+/// expected ...", where `where` is "beside --model". Throws InputError.
+void refuse_given(const CLI::App& app, const std::vector<std::string>& options, const std::string& where,
+                  const std::string& expected);
 
 }  // namespace maximin::apps

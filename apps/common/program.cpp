@@ -109,14 +109,26 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   std::string what = error.what();
   if (error.get_name() != "ArgumentMismatch") return what;
   if (what.find("missing") != std::string::npos) return what.substr(0, what.find(':')) + ": a value is missing";
+  if (what.find("At Most 1 required") != std::string::npos)
+    return what.substr(0, what.find(':')) + ": given more than once, expected once";
   if (what.find("flag override") != std::string::npos)
     return "--" + what.substr(0, what.find(' ')) + ": takes no value";
   return what;
 }
 
+/// An empty word is a slip, e.g. of an unset variable of a shell, and never a value.
+void refuse_empty_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) throw CLI::ValidationError(option->get_name(), "empty, expected a value");
+    }
+  }
+}
+
 int parse_and_run(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& action) {
   try {
     app.parse(argc, argv);
+    refuse_empty_values(selected(app));
   } catch (const CLI::Success& asked) {
     print(asked.get_name() == "CallForVersion" ? std::string(asked.what()) + "\n" : app.help());
     flush_standard_output();
