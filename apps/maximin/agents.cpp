@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include <maximin/apps/common/option_checks.hpp>
 #include <maximin/apps/common/program.hpp>
-#include <maximin/apps/maximin/describe.hpp>
+#include <maximin/apps/maximin/policy_file.hpp>
 #include <maximin/tabular/optimal_attack.hpp>
 #include <maximin/tabular/pessimistic_q_iteration.hpp>
 #include <maximin/tabular/policy_evaluation.hpp>
@@ -19,62 +16,6 @@
 namespace maximin::apps {
 
 namespace {
-
-constexpr std::size_t largest_policy_file = std::size_t{64} << 20;
-
-/// The words of a list: separated by commas, spaces or line breaks, brackets and quotes left out.
-std::vector<std::string> words(const std::string& text) {
-  std::vector<std::string> result(1);
-  for (const char c : text) {
-    if (std::string_view(", \t\r\n[]\"").find(c) == std::string_view::npos) {
-      result.back() += c;
-    } else if (!result.back().empty()) {
-      result.emplace_back();
-    }
-  }
-  if (result.back().empty()) result.pop_back();
-  return result;
-}
-
-std::string read_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text;
-  text.resize(largest_policy_file + 1);
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (in.bad() || (text.empty() && !in.eof())) throw InputError(path + ": cannot be read, expected a list of actions");
-  if (text.size() > largest_policy_file) throw InputError(path + ": larger than 64 MiB, expected a list of actions");
-  return text;
-}
-
-/// A list of actions, or the "policy" of a JSON object.
-std::vector<std::string> policy_words(const std::string& path) {
-  const std::string text = read_text(path);
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos || text[first] != '{') return words(text);
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  if (json.is_discarded())
-    throw InputError(path + ": not valid JSON, expected a list of actions or an object with \"policy\"");
-  const auto policy = json.find("policy");
-  if (policy == json.end() || !policy->is_array())
-    throw InputError(path + ": $.policy: missing, expected a list of actions");
-  std::vector<std::string> result;
-  for (const auto& action : *policy) result.push_back(action.is_string() ? action.get<std::string>() : action.dump());
-  return result;
-}
-
-Policy given_policy(const AgentOptions& options, const Model<double>& model) {
-  const bool in_file = !options.policy_file.empty();
-  const std::string where = in_file ? options.policy_file : "--policy";
-  const auto list = in_file ? policy_words(options.policy_file) : words(options.policy);
-  if (list.size() != static_cast<std::size_t>(model.mdp.states())) {
-    throw InputError(fmt::format("{}: {} actions, expected {}, one for each state that may be observed", where,
-                                 list.size(), model.mdp.states()));
-  }
-  Policy policy;
-  for (const std::string& word : list) policy.push_back(find_action(model, word, where));
-  return policy;
-}
 
 std::string fate_text(const PessimisticQIteration<double>& run) {
   if (run.fate == Fate::settled) return fmt::format("settled from round {}", run.periodic_from);
@@ -134,6 +75,12 @@ void declare(CLI::App& app, AgentOptions& options, AgentMemory memory) {
       ->excludes(list);
 }
 
+void check_agent(const CLI::App& app) {
+  const CLI::Option& agent = *app.get_option("--agent");
+  if (agent.count() == 0 || agent.as<std::string>() == "policy") return;
+  refuse_given(app, {"--policy", "--policy-file"}, "beside --agent " + agent.as<std::string>(), "one of the two");
+}
+
 StationaryAgent make_agent(const AgentOptions& options, const Model<double>& model,
                            const Perturbation<double>& perturbation, const CertifiedSolution<double>& optimal) {
   if (options.agent == "pessimistic") return pessimistic_agent(model, perturbation);
@@ -149,7 +96,8 @@ StationaryAgent make_agent(const AgentOptions& options, const Model<double>& mod
   } else if (options.policy.empty() && options.policy_file.empty()) {
     throw InputError("--agent: policy, expected --policy LIST or --policy-file FILE with it");
   } else {
-    agent.policy = given_policy(options, model);
+    agent.policy = options.policy_file.empty() ? policy_of_list(options.policy, model, "--policy")
+                                               : read_policy_file(options.policy_file, model);
     agent.about = "the policy given";
   }
   return agent;

@@ -27,6 +27,9 @@ enum class AgentMemory {
 /// Adds --agent, --policy and --policy-file.
 void declare(CLI::App& app, AgentOptions& options, AgentMemory memory);
 
+/// Refuses a policy beside an agent that takes none. Throws InputError.
+void check_agent(const CLI::App& app);
+
 /// A stationary agent and the action values by which the myopic attacker judges what it provokes.
 struct StationaryAgent {
   Policy policy;          ///< by observation

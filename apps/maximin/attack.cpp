@@ -125,7 +125,12 @@ void add_attack(CLI::App& app, Task& task) {
       "  maximin attack model.json --agent greedy --eps 1\n"
       "  maximin attack model.json --policy 0,1,1,0\n"
       "  maximin solve model.json --json > solved.json && maximin attack model.json --policy-file solved.json");
-  sub->callback([options, &task] { task = [options] { return attack(*options); }; });
+  sub->callback([options, sub, &task] {
+    task = [options, sub] {
+      check_agent(*sub);
+      return attack(*options);
+    };
+  });
 }
 
 }  // namespace maximin::apps

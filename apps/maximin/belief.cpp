@@ -166,7 +166,7 @@ void declare(CLI::App& app, BeliefOptions& options) {
   app.add_option("--start", options.start, "state to start in, by name or index; else drawn from the model's start")
       ->type_name("STATE");
   app.add_option("--seed", options.seed, "seed of all randomness")
-      ->check(whole_number(0))
+      ->check(seed_number())
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--max-positions", options.max_positions,

@@ -35,14 +35,20 @@ std::string metric_text(const Problem& problem) {
   return "hops in the transition graph";
 }
 
-/// The index of `text` in the names, else as a number below `count`; -1 if it is neither.
-std::int32_t find(const std::vector<std::string>& names, std::int32_t count, const std::string& text) {
-  const auto named = std::find(names.begin(), names.end(), text);
-  if (named != names.end()) return static_cast<std::int32_t>(named - names.begin());
-  std::int32_t index = -1;
+/// The index of `text` in the names, else as a number below `count`; -1 if it is neither. Throws InputError when it is
+/// the name of one and the number of another.
+std::int32_t find(const std::vector<std::string>& names, std::int32_t count, const std::string& text,
+                  const std::string& option, const char* what) {
+  std::int32_t number = -1;
   const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, index);
-  return error == std::errc() && stop == end && index >= 0 && index < count ? index : -1;
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  const std::int32_t index = error == std::errc() && stop == end && number >= 0 && number < count ? number : -1;
+  const auto named = std::find(names.begin(), names.end(), text);
+  if (named == names.end()) return index;
+  const auto name = static_cast<std::int32_t>(named - names.begin());
+  if (index < 0 || index == name) return name;
+  throw InputError(fmt::format("{}: {} is the name of {} {} and the index of another, expected a word that is one {}",
+                               option, text, what, name, what));
 }
 
 [[noreturn]] void fail_to_find(const std::string& option, const std::string& text, const std::string& what,
@@ -135,13 +141,13 @@ Json action_names(const Model<double>& model, const Policy& policy) {
 }
 
 State find_state(const Model<double>& model, const std::string& text, const std::string& option) {
-  const State s = find(model.state_names, model.mdp.states(), text);
+  const State s = find(model.state_names, model.mdp.states(), text, option, "state");
   if (s < 0) fail_to_find(option, text, "state", model.mdp.states(), model.state_names);
   return s;
 }
 
 Action find_action(const Model<double>& model, const std::string& text, const std::string& option) {
-  const Action a = find(model.action_names, model.mdp.actions(), text);
+  const Action a = find(model.action_names, model.mdp.actions(), text, option, "action");
   if (a < 0) fail_to_find(option, text, "action", model.mdp.actions(), model.action_names);
   return a;
 }

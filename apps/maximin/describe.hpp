@@ -55,9 +55,10 @@ std::string set_text(const Model<double>& model, std::span<const State> states, 
 /// The names of the actions, by state.
 Json action_names(const Model<double>& model, const Policy& policy);
 
-/// The state of that name or index. Throws InputError naming `option` when there is none.
+/// The state of that name or index. Throws InputError naming `option` when there is none, or when the text is the name
+/// of one state and the index of another.
 State find_state(const Model<double>& model, const std::string& text, const std::string& option);
-/// The action of that name or index. Throws InputError naming `option` when there is none.
+/// The action of that name or index. Throws InputError as `find_state`.
 Action find_action(const Model<double>& model, const std::string& text, const std::string& option);
 
 }  // namespace maximin::apps

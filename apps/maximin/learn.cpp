@@ -194,7 +194,7 @@ void declare(CLI::App& app, LearnOptions& options) {
       ->check(real_number({.low = 0, .high = 1, .above = true}))
       ->type_name("X");
   app.add_option("--seed", options.seed, "seed; episode k is the same whatever the number of episodes")
-      ->check(whole_number(0))
+      ->check(seed_number())
       ->type_name("N")
       ->capture_default_str();
 }

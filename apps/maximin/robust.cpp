@@ -63,7 +63,8 @@ std::string summary_text(const Problem& problem, const CertifiedSolution<double>
   if (!robust.stackelberg) return text + fmt::format("Stackelberg: not solved ({}).\n", robust.stackelberg_unknown);
   return text + fmt::format("Stackelberg: of {} deterministic stationary policies, {} for every start state.\n",
                             robust.stackelberg->policies,
-                            robust.stackelberg->one_policy_is_best_everywhere() ? "one is best, as far as can be told," : "none is best");
+                            robust.stackelberg->one_policy_is_best_everywhere() ? "one is best, as far as can be told,"
+                                                                                : "none is best");
 }
 
 Json agent_json(const Model<double>& model, const RobustSolution::Agent& agent) {
@@ -75,6 +76,13 @@ Json agent_json(const Model<double>& model, const RobustSolution::Agent& agent) 
   json["attack"] = agent.attacked.attack;
   json["certified_error"] = agent.attacked.error;
   return json;
+}
+
+/// The pairs of one period, in the order of the rounds, as indices; null where the fate is not known.
+Json recurring_pairs(const PessimisticQIteration<double>& run) {
+  if (run.fate == Fate::undetermined) return nullptr;
+  const auto first = run.pair_of.begin() + run.periodic_from;
+  return std::vector<int>(first, first + run.period);
 }
 
 Json iteration_json(const PessimisticQIteration<double>& run) {
@@ -91,6 +99,7 @@ Json iteration_json(const PessimisticQIteration<double>& run) {
     pairs.push_back(std::move(one));
   }
   json["pairs"] = std::move(pairs);
+  json["recurring"] = recurring_pairs(run);
   json["q"] = to_json(run.q);
   return json;
 }

@@ -149,8 +149,20 @@ Json rows_json(const SimulateOptions& options, const Problem& problem, const std
   return json;
 }
 
+/// Near a discount of 1 the default horizon is longer than anybody would wait for, and a shorter one must be asked for:
+/// the returns would silently be those of cut episodes.
+void check_horizon(const SimulateOptions& options, const FiniteMdp<double>& mdp) {
+  constexpr long most = 1'000'000;
+  const long horizon = simulation_horizon(mdp, options.simulation);
+  if (options.simulation.horizon > 0 || horizon <= most) return;
+  throw InputError(
+      fmt::format("--horizon: none given, and at discount {} an episode takes {} steps, expected --horizon N",
+                  mdp.discount(), horizon));
+}
+
 int run_simulation(const SimulateOptions& options) {
   const Problem problem = load_problem(options.model);
+  check_horizon(options, problem.model.mdp);
   Simulator simulator(options, problem);
   const std::vector<Row> rows = simulator.run();
   if (options.output.json) {
@@ -190,7 +202,7 @@ void declare(CLI::App& app, SimulateOptions& options) {
   app.add_option("--start", options.start, "state to start in, by name or index; else drawn from the model's start")
       ->type_name("STATE");
   app.add_option("--seed", options.simulation.seed, "seed; episode k is the same whatever the number of episodes")
-      ->check(whole_number(0))
+      ->check(seed_number())
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--max-positions", options.max_positions,
@@ -213,7 +225,12 @@ void add_simulate(CLI::App& app, Task& task) {
       "Examples:\n"
       "  maximin simulate model.json --agent greedy --episodes 10000\n"
       "  maximin simulate model.json --agent belief --attack optimal --json");
-  sub->callback([options, &task] { task = [options] { return run_simulation(*options); }; });
+  sub->callback([options, sub, &task] {
+    task = [options, sub] {
+      check_agent(*sub);
+      return run_simulation(*options);
+    };
+  });
 }
 
 }  // namespace maximin::apps

@@ -184,8 +184,13 @@ void add_solve(CLI::App& app, Task& task) {
       "  maximin solve tiger.POMDP --discount 0.9 --method value-iteration --json\n"
       "  maximin solve model.json --robust --eps 0.5 --norm linf\n"
       "  maximin solve model.json --graph model.dot && dot -Tsvg model.dot -o model.svg");
-  sub->callback([options, &task] {
-    task = [options] { return options->robust ? solve_robustly(*options) : solve_plain(*options); };
+  sub->callback([options, sub, &task] {
+    task = [options, sub] {
+      if (options->robust) return solve_robustly(*options);
+      refuse_given(*sub, {"--metric", "--norm", "--eps", "--max-iterations", "--max-positions", "--max-policies"},
+                   "without --robust", "--robust beside it");
+      return solve_plain(*options);
+    };
   });
 }
 

@@ -70,7 +70,47 @@ def usage(arguments, says, code=2):
     return Refusal(arguments, code, says, {"good.json": model()})
 
 
+def numerals(policy, says):
+    """A policy file for a model whose actions are called as the index of the other."""
+    named = model(actions=2, rewards=[[0, 1], [1, 0]], action_names=["1", "0"], state_names=["a", "1"], points=[[0], [1]],
+                  norm="l1", eps=1, transitions=[[0, 0, 1, 1], [0, 1, 0, 1], [1, 0, 1, 1], [1, 1, 0, 1]])
+    return Refusal(["attack", "named.json", *policy], 2, says,
+                   {"named.json": named, "half.json": '{"policy": [0, 0.5]}', "lists.json": "[0, []]",
+                    "far.json": "[0, 2]", "less.json": "[-1, 0]", "other.json": '["1", "2"]', "null.json": "[null, 0]",
+                    "huge.json": "[0, 18446744073709551616]", "deep.json": '{"policy": [' + "[" * 200000 + "]" * 200000 + "]}",
+                    "deep_list.json": "[" * 200000})
+
+
 REFUSALS = [
+    # policies
+    numerals(["--policy", "0,1"], "--policy: 0 is the name of action 1 and the index of another"),
+    numerals(["--policy-file", "half.json"], "half.json: $.policy[1]: 0.5, expected the index or name"),
+    numerals(["--policy-file", "lists.json"], "lists.json: $[1]: a value of type array"),
+    numerals(["--policy-file", "null.json"], "null.json: $[0]: a value of type null"),
+    numerals(["--policy-file", "far.json"], "far.json: $[1]: 2 is no action, expected an index 0 to 1"),
+    numerals(["--policy-file", "less.json"], "less.json: $[0]: -1 is no action"),
+    numerals(["--policy-file", "huge.json"], "huge.json: $[1]: "),
+    numerals(["--policy-file", "other.json"], 'other.json: $[1]: "2" is no action, expected the name'),
+    numerals(["--policy-file", "deep.json"], "deep.json: nested deeper than 32 levels"),
+    numerals(["--policy-file", "deep_list.json"], "deep_list.json: nested deeper than 32 levels"),
+    # options that would be ignored, empty values, numbers that are read otherwise elsewhere
+    usage(["attack", "good.json", "--policy", "0 0", "--agent", "greedy"], "--policy: has no effect beside --agent greedy"),
+    usage(["attack", "good.json", "--agent", "maximin", "--policy-file", "p"], "--policy-file: has no effect beside --agent"),
+    usage(["simulate", "good.json", "--policy", "0 0", "--agent", "greedy"], "--policy: has no effect beside --agent greedy"),
+    *[usage(["solve", "good.json", *given], "%s: has no effect without --robust" % given[0])
+      for given in (["--eps", "1"], ["--metric", "hops"], ["--norm", "l1"], ["--max-policies", "9"])],
+    *[usage(arguments, "%s: empty, expected a value" % arguments[-2]) for arguments in (
+        ["solve", "--model", ""], ["solve", "--example", ""], ["solve", "good.json", "--graph", ""],
+        ["solve", "good.json", "--reward-model", ""], ["convert", "good.json", "--output", ""],
+        ["belief", "--start", ""], ["attack", "good.json", "--policy", ""], ["attack", "good.json", "--policy-file", ""])],
+    usage(["solve", ""], "--model: empty, expected a value"),
+    usage(["convert", "good.json", "-o", ""], "--output: empty, expected a value"),
+    *[usage([command, "--seed", seed], "--seed: %s, expected a whole number" % seed)
+      for command in ("belief", "simulate", "learn")
+      for seed in ("010", "0x10", "+1", "-1", " 1", "1e3", "1.0", "18446744073709551616")],
+    usage(["simulate", "good.json", "--episodes", "010"], "--episodes: 010, expected a whole number without leading zeros"),
+    usage(["simulate", "good.json", "--eps", "1", "--eps", "2"], "--eps: given more than once, expected once"),
+    usage(["simulate", "good.json", "--metric", "discrete", "--discount", "0.99999999999"], "expected --horizon N"),
     # usage
     usage([], "no command given"),
     usage(["slove"], "did you mean solve?"),
@@ -213,6 +253,43 @@ def check_policy_file(program):
         return [] if json.loads(by_file)["attacks"] == greedy["attacks"] else ["the solved policy is not the greedy agent"]
 
 
+def check_numerals(program):
+    """Where actions are called by numerals, whole numbers are indices and strings are names."""
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        case = numerals([], "")
+        for name, text in {**case.files, "indices.json": '{"policy": [0, 1]}', "names.json": '["1", "0"]'}.items():
+            with open(os.path.join(folder, name), "w") as f:
+                f.write(text)
+        for name in ("indices.json", "names.json"):
+            out = run(program, ["attack", "named.json", "--policy-file", name, "--json"], cwd=folder).stdout
+            found[name] = json.loads(out)["policy"] if out else None
+    return [] if found == {"indices.json": [0, 1], "names.json": [0, 1]} else ["read as %s, expected [0, 1]" % found]
+
+
+def check_largest_seed(program):
+    """Every 64-bit seed is one, and another one than its neighbour."""
+    last, before = (run(program, ["belief", "--attack", "random", "--json", "--seed", str(2**64 - k)]) for k in (1, 2))
+    if last.returncode != 0 or json.loads(last.stdout)["seed"] != 2**64 - 1:
+        return ["exit code %d, %r" % (last.returncode, last.stderr)]
+    return [] if json.loads(last.stdout)["steps"] != json.loads(before.stdout)["steps"] else ["two seeds, one walk"]
+
+
+def check_recurring(program):
+    """The pairs that recur are as many as the period, and each is one of those met."""
+    problems = []
+    for example in ("cycling", "one-sided"):
+        result = run(program, ["solve", "--example", example, "--robust", "--json"])
+        found = json.loads(result.stdout)["robust"]["iteration"]
+        recurring = found["recurring"]
+        if len(recurring) != found["period"] or not set(recurring) <= set(range(len(found["pairs"]))):
+            problems.append("%s: %s recur of %d pairs, period %d" % (example, recurring, len(found["pairs"]), found["period"]))
+    short = run(program, ["solve", "--example", "cycling", "--robust", "--json", "--max-iterations", "1"])
+    if json.loads(short.stdout)["robust"]["iteration"]["recurring"] is not None:
+        problems.append("pairs recur although the fate is undetermined")
+    return problems
+
+
 def check_graph(program):
     with tempfile.TemporaryDirectory() as folder:
         target = os.path.join(folder, "g.dot")
@@ -270,7 +347,8 @@ def main():
         for case in REFUSALS if not arguments.regenerate else []:
             checks.append((" ".join(case.arguments), lambda case=case: check_refusal(program, case, folder)))
         if not arguments.regenerate:
-            for check in (check_output_failures, check_convert, check_policy_file, check_graph, check_interrupt):
+            for check in (check_output_failures, check_convert, check_policy_file, check_numerals, check_largest_seed, check_recurring,
+                          check_graph, check_interrupt):
                 checks.append((check.__name__, lambda check=check: check(program)))
         report(checks)
 
