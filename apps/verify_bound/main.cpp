@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   verify_bound::Options options;
   verify_bound::declare(program, options);
   return apps::run_program(program, argc, argv, [&] {
+    verify_bound::check_combination(program, options);
     if (options.model.given()) return verify_bound::run_model_command(options);
     if (options.replay) return verify_bound::run_replay_command(options);
     return verify_bound::run_campaign_command(options);

@@ -12,13 +12,10 @@
 namespace maximin::verify_bound {
 
 int run_model_command(const Options& options) {
-  if (!options.trials_out.empty() || options.resume || options.replay) {
-    throw InputError("--model: one model, expected neither --trials-out, --resume nor --replay beside it");
-  }
   const Model<double> model = apps::load(options.model);
   const Perturbation<double> perturbation = apps::make_perturbation(model, options.model);
   const std::string source = options.model.file.empty() ? options.model.example : options.model.file;
-  const TrialRecord record{0, source, examine(model.mdp, perturbation, examination_options(options))};
+  TrialRecord record{0, source, examine(model.mdp, perturbation, examination_options(options))};
   nlohmann::ordered_json how = configuration(options);
   how["model"] = source;
   if (!options.report.empty()) {
@@ -33,6 +30,7 @@ int run_model_command(const Options& options) {
     json["record"] = to_json(record);
     apps::print(apps::json_text(json));
   } else {
+    record.family = apps::printable(source);
     apps::print(verdict_text(record, examination_options(options).reading));
   }
   return static_cast<int>(exit_code(record.found));

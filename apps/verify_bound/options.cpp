@@ -80,6 +80,7 @@ void declare_campaign(CLI::App& program, Options& o) {
       ->type_name("N")
       ->group(group);
   program.add_option("--seed", o.seed, "trial K of a seed is always the same model (default: 1)")
+      ->check(apps::seed_number())
       ->type_name("N")
       ->group(group);
   program.add_option("--threads", o.threads, "0 takes one per core (the default); changes no result")
@@ -138,7 +139,7 @@ void declare_output(CLI::App& program, Options& o) {
   program
       .add_option("--violation-dir", o.violation_dir,
                   "folder where one violating model per claim is written, shrunk\n(default: here)")
-      ->check(CLI::ExistingDirectory)
+      ->check(apps::existing_folder())
       ->type_name("DIR")
       ->group(group);
   program.add_flag("--quiet", o.quiet, "no progress bar")->group(group);
@@ -151,6 +152,22 @@ void declare(CLI::App& program, Options& o) {
   declare_campaign(program, o);
   apps::declare(program, o.model, apps::ModelArgument::option);
   declare_output(program, o);
+}
+
+void check_combination(const CLI::App& program, const Options& o) {
+  if (!o.model.given()) {
+    const std::string where = "on random models";
+    apps::refuse_given(program, {"--discount"}, where, "--gamma, or --model or --example beside it");
+    apps::refuse_given(program, {"--metric", "--reward-model", "--intervals"}, where, "--model or --example beside it");
+    return;
+  }
+  const std::string where = o.model.file.empty() ? "beside --example" : "beside --model";
+  apps::refuse_given(program, {"--gamma"}, where, "--discount");
+  apps::refuse_given(
+      program,
+      {"--trials", "--seed", "--threads", "--family", "--states", "--actions", "--l-r", "--l-p", "--dimension",
+       "--successors", "--replay", "--trials-out", "--resume", "--save-model", "--violation-dir"},
+      where, "it with random models only");
 }
 
 ExaminationOptions examination_options(const Options& o) {

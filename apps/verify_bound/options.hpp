@@ -50,6 +50,10 @@ struct Options {
 /// Declares the options on the program.
 void declare(CLI::App& program, Options& options);
 
+/// Refuses options that would be ignored: those of model files on random models, and the other way round. Throws
+/// InputError naming both.
+void check_combination(const CLI::App& program, const Options& options);
+
 /// What to examine on each model. Throws InputError on an unknown claim.
 ExaminationOptions examination_options(const Options& options);
 

@@ -20,7 +20,28 @@ GOLDEN = [
     Golden("verify_bound_cycling.txt", ["--example", "cycling"]),
 ]
 
+# Options of the one kind of run that would be ignored in the other.
+IGNORED = [
+    *[Refusal([*given, "--trials", "1"], 2, "%s: has no effect on random models" % given[0])
+      for given in (["--metric", "hops"], ["--discount", "0.5"], ["--reward-model", "r"], ["--intervals", "nominal"])],
+    Refusal(["--discount", "0.5", "--replay", "1"], 2, "expected --gamma"),
+    *[Refusal(["--example", "one-sided", *given], 2, "%s: has no effect beside --example" % given[0])
+      for given in (["--trials", "5"], ["--seed", "1"], ["--threads", "1"], ["--states", "3"], ["--actions", "2"],
+                    ["--gamma", "0.5"], ["--l-r", "1"], ["--l-p", "1"], ["--dimension", "1"], ["--successors", "1"],
+                    ["--family", "broad"], ["--save-model", "m.json"], ["--trials-out", "t.jsonl"], ["--resume"],
+                    ["--violation-dir", "."])],
+    Refusal(["--model", "m.json", "--seed", "1"], 2, "--seed: has no effect beside --model", {"m.json": model()}),
+]
+
 REFUSALS = [
+    *IGNORED,
+    *[Refusal([option, "", "--trials", "1"], 2, "%s: empty, expected a value" % option)
+      for option in ("--model", "--example", "--trials-out", "--report", "--save-model", "--states", "--gamma", "--claims")],
+    Refusal(["--violation-dir", "", "--trials", "1"], 2, "--violation-dir: "),
+    *[Refusal(["--trials", "1", "--seed", seed], 2, "--seed: %s, expected a whole number" % seed)
+      for seed in ("010", "0x10", "+1", "-1", "1e3", "18446744073709551616")],
+    Refusal(["--trials", "010"], 2, "--trials: 010, expected a whole number without leading zeros"),
+    Refusal(["--trials", "1", "--trials", "2"], 2, "--trials: given more than once, expected once"),
     Refusal(["--bogus"], 2, "--bogus"),
     Refusal(["--trials", "0"], 2, "--trials"),
     Refusal(["--trials", "1e3"], 2, "--trials"),
@@ -36,7 +57,8 @@ REFUSALS = [
     Refusal(["--save-model", "m.json"], 2, "--replay"),
     Refusal(["--replay", "1", "--trials-out", "t.jsonl"], 2, "--trials-out"),
     Refusal(["--trials", "1", "--trials-out", "no-such-folder/t.jsonl"], 2, "no-such-folder/t.jsonl"),
-    Refusal(["--trials", "1", "--violation-dir", "no-such-folder"], 2, "no-such-folder"),
+    Refusal(["--trials", "1", "--violation-dir", "no-such-folder"], 2,
+            "--violation-dir: no-such-folder: no such folder, expected one that exists"),
     Refusal(["--model", "absent.json"], 2, "absent.json"),
     Refusal(["--model", "m.json", "--replay", "1"], 2, "--replay", {"m.json": model()}),
     Refusal(["--model", "m.json", "--example", "grid"], 2, "--example", {"m.json": model()}),
@@ -176,6 +198,17 @@ def check_assumption(program):
         return [] if ok else ["exit code %d, %r" % (result.returncode, result.stdout)]
 
 
+def check_terminal(program):
+    """What a file is called does not drive the terminal that the verdict is printed on."""
+    with tempfile.TemporaryDirectory() as folder:
+        name = "e\x1b[31m.json"
+        with open(os.path.join(folder, name), "w") as f:
+            f.write(model(points=[[0], [1]], norm="l1", eps=1))
+        result = run(program, ["--model", name], cwd=folder)
+        ok = result.returncode in (0, 3) and b"\x1b" not in result.stdout + result.stderr and b"e?[31m.json" in result.stdout
+        return [] if ok else ["exit code %d, %r" % (result.returncode, result.stdout)]
+
+
 def check_report(program):
     with tempfile.TemporaryDirectory() as folder:
         campaign(program, folder, "--report", "r.html")
@@ -195,7 +228,7 @@ def check_shared_model(program, path):
 
 
 CHECKS = [check_default_family, check_threads, check_resume, check_violation, check_replay, check_vacuous,
-          check_assumption, check_report]
+          check_assumption, check_terminal, check_report]
 
 
 def main():
