@@ -14,7 +14,8 @@ namespace maximin {
 
 /// Kinds of random models to run a campaign on, each made to bring about one thing.
 enum class Family {
-  informative,  ///< Theorem 1 says something: its bound as printed lies below gamma span(R)/(1-gamma), yet attacks matter
+  informative,  ///< Theorem 1 says something: its bound as printed lies below gamma span(R)/(1-gamma), yet attacks
+                ///< matter
   broad,        ///< anything: all sizes, norms, signs and constants, gamma up to 0.95; most bounds are vacuous
   sparse,       ///< broad, with two to four successors a row
   cycling,      ///< tiny integer models in which everything is confused: the policy pair often cycles
