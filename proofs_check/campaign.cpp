@@ -39,9 +39,12 @@ class Reorder {
 
 }  // namespace
 
-TrialRecord run_trial(const Campaign& campaign, const ModelSource& source, long trial) {
+DrawnModel draw_trial(const Campaign& campaign, const ModelSource& source, long trial) {
   Stream rng(campaign.seed, static_cast<std::uint64_t>(trial));
-  const DrawnModel drawn = source(rng);
+  return source(rng);
+}
+
+TrialRecord run_trial(const Campaign& campaign, const DrawnModel& drawn, long trial) {
   TrialRecord record{trial, drawn.family, {}};
   try {
     record.found = examine(drawn.model.mdp, make_perturbation(drawn.model), campaign.examination);
@@ -68,7 +71,7 @@ long run_campaign(const Campaign& campaign, const ModelSource& source, const Rec
       while (!stop && !failed) {
         const long trial = next++;
         if (trial >= campaign.trials) return;
-        reorder.take(run_trial(campaign, source, trial));
+        reorder.take(run_trial(campaign, draw_trial(campaign, source, trial), trial));
       }
     } catch (const Interrupted&) {
       return;  // the trial in progress is given up; it was never finished

@@ -35,8 +35,11 @@ struct Campaign {
 /// is not called again.
 using RecordSink = std::function<void(TrialRecord&&)>;
 
-/// Draws and examines trial k by itself. A solver that runs out of its budget makes every claim undetermined.
-TrialRecord run_trial(const Campaign& campaign, const ModelSource& source, long trial);
+/// The model of trial k.
+DrawnModel draw_trial(const Campaign& campaign, const ModelSource& source, long trial);
+
+/// Examines trial k, whose model was drawn. A solver that runs out of its budget makes every claim undetermined.
+TrialRecord run_trial(const Campaign& campaign, const DrawnModel& drawn, long trial);
 
 /// Runs the campaign. `stop` ends it early, with all records before the first missing one handed to the sink.
 /// Returns how many trials the sink has seen in this run.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <vector>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace maximin {
 namespace {
@@ -12,6 +12,11 @@ namespace {
 std::string percent(long part, long whole) {
   if (whole == 0) return "-";
   return fmt::format("{:.1f}%", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+}
+
+/// "1 model", "2 models".
+std::string counted(long n, const char* what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
 }
 
 std::string ratio(double x) {
@@ -39,25 +44,25 @@ std::string periods(const CampaignSummary& s) {
   return text.empty() ? text : text + ")";
 }
 
-std::string conclusion(const CampaignSummary& s, std::uint64_t seed, bool complete) {
+std::string conclusion(const CampaignSummary& s, std::string_view draw, bool complete) {
   const char* interrupted = complete ? "" : " The run was interrupted; --resume completes it.";
-  switch (exit_code(s, complete)) {
-    case ExitCode::violated: {
+  switch (outcome(s, complete)) {
+    case Outcome::violated: {
       std::string lines;
       for (const Claim& c : claims()) {
         const ClaimSummary& cs = s.claims[static_cast<std::size_t>(c.id)];
         if (cs.violated == 0) continue;
-        lines += fmt::format("  {:<16} on {} models, first --seed {} --replay {}\n", c.name, cs.violated, seed,
-                             cs.first_violation);
+        lines += fmt::format("  {:<16} on {}, the first: verify_bound {} --replay {}\n", c.name,
+                             counted(cs.violated, "model"), draw, cs.first_violation);
       }
-      return fmt::format("VIOLATED on {} of {} models.{}\n{}", s.violations, s.trials, interrupted, lines);
+      return fmt::format("VIOLATED on {} of {}.{}\n{}", s.violations, counted(s.trials, "model"), interrupted, lines);
     }
-    case ExitCode::undetermined:
+    case Outcome::undetermined:
       if (s.some_claim_never_decided()) {
         return fmt::format(
-            "UNDETERMINED: no violation in {} models, but a claim that was asked for was decided on none of them; see "
-            "--max-iterations, --max-positions.{}\n",
-            s.trials, interrupted);
+            "UNDETERMINED: no violation in {}, but a claim that was asked for was decided on none of them; see "
+            "--max-iterations, --max-period, --max-positions.{}\n",
+            counted(s.trials, "model"), interrupted);
       }
       if (s.trials > 0 && s.vacuous()) {
         return fmt::format(
@@ -65,27 +70,28 @@ std::string conclusion(const CampaignSummary& s, std::uint64_t seed, bool comple
             "campaign verifies nothing. Ask for smaller eps, gamma or l_p, or --family informative.{}\n",
             interrupted);
       }
-      return fmt::format("UNDETERMINED: {} models and no violation.{}\n", s.trials, interrupted);
-    case ExitCode::assumption_fails:
-      return fmt::format("ASSUMPTION FAILS on {} of {} models; no violation on the others.\n", s.assumption_failures,
-                         s.trials);
+      return fmt::format("UNDETERMINED: {} and no violation.{}\n", counted(s.trials, "model"), interrupted);
+    case Outcome::assumption_fails:
+      return fmt::format("ASSUMPTION FAILS on {} of {}; no violation on the others.\n", s.assumption_failures,
+                         counted(s.trials, "model"));
     default:
       return fmt::format(
-          "HOLDS: no violation in {} models. At most {:.3f} percent of such models violate a claim (95 percent upper "
+          "HOLDS: no violation in {}. At most {:.3f} percent of such models violate a claim (95 percent upper "
           "limit).\n{}Seen in floating point, with certified numerical error; not a proof.\n",
-          s.trials, 100 * s.violation_upper_limit(),
+          counted(s.trials, "model"), 100 * s.violation_upper_limit(),
           s.undetermined == 0
               ? ""
               : fmt::format("Some claim is undetermined on {} of them: a budget ran out.\n", s.undetermined));
   }
 }
 
-std::string witness(const char* name, const LipschitzConstant<double>& c) {
-  if (c.infinite) return fmt::format("  {:<14} infinite: states {} and {} at distance 0 differ\n", name, c.s1, c.s2);
+std::string witness(const char* name, const LipschitzConstant<double>& c, const Model<double>& model) {
+  const std::string pair = fmt::format("states {} and {}", model.state_name(c.s1), model.state_name(c.s2));
+  if (c.infinite) return fmt::format("  {:<14} infinite: {} at distance 0 differ\n", name, pair);
   if (c.s1 == c.s2) return fmt::format("  {:<14} {:.6g}\n", name, c.value);
-  const std::string target = c.target < 0 ? "" : fmt::format(", successor {}", c.target);
-  return fmt::format("  {:<14} {:.6g}   attained by states {} and {}, action {}{}\n", name, c.value, c.s1, c.s2,
-                     c.action, target);
+  const std::string target = c.target < 0 ? "" : ", successor " + model.state_name(c.target);
+  return fmt::format("  {:<14} {:.6g}   attained by {}, action {}{}\n", name, c.value, pair,
+                     model.action_name(c.action), target);
 }
 
 std::string fate_text(const Examination& e) {
@@ -95,36 +101,50 @@ std::string fate_text(const Examination& e) {
     return fmt::format("the policy pairs cycle with period {} from n = {}, seen at n = {}", e.period, e.periodic_from,
                        e.iterations);
   }
-  return fmt::format("neither settled nor cycled in {} rounds", e.iterations);
+  return fmt::format("neither settled nor cycled in {} rounds (--max-iterations, --max-period)", e.iterations);
 }
 
-std::string check_row(const Claim& claim, const Check& check, bool informative) {
+/// "at n = 4, states 1 and 2, action 0": where the tightest instance of a claim stands.
+std::string place_text(const Check& check, const Model<double>& model) {
+  std::vector<std::string> parts;
+  const Place& at = check.place;
+  if (check.n >= 0) parts.push_back(fmt::format("n = {}", check.n));
+  if (at.other >= 0) {
+    parts.push_back(fmt::format("states {} and {}", model.state_name(at.state), model.state_name(at.other)));
+  } else if (at.state >= 0) {
+    parts.push_back("state " + model.state_name(at.state));
+  }
+  if (at.action >= 0) parts.push_back("action " + model.action_name(at.action));
+  return parts.empty() ? "" : fmt::format("at {}", fmt::join(parts, ", "));
+}
+
+std::string check_row(const Claim& claim, const Check& check, bool informative, const Model<double>& model) {
   if (check.verdict == Verdict::not_asked) return "";
   if (check.verdict == Verdict::undetermined || check.verdict == Verdict::assumption_fails) {
     return fmt::format("  {:<16} {:<32} {}\n", claim.name, claim.title, to_string(check.verdict));
   }
-  const std::string round = check.n < 0 ? "" : fmt::format("at n = {}", check.n);
   const char* worth = !claim.is_bound ? "" : informative ? "informative" : "vacuous";
   return fmt::format("  {:<16} {:<32} {:<9} {:>13.6g} <= {:<13.6g} {:>8} {:<12} {}\n", claim.name, claim.title,
-                     to_string(check.verdict), check.left, check.right, ratio(check.tightness()), worth, round);
+                     to_string(check.verdict), check.left, check.right, ratio(check.tightness()), worth,
+                     place_text(check, model));
 }
 
 }  // namespace
 
-ExitCode exit_code(const CampaignSummary& s, bool complete) {
-  if (s.violations > 0) return ExitCode::violated;
-  if (!complete || s.vacuous() || s.some_claim_never_decided()) return ExitCode::undetermined;
-  return s.assumption_failures > 0 ? ExitCode::assumption_fails : ExitCode::holds;
+Outcome outcome(const CampaignSummary& s, bool complete) {
+  if (s.violations > 0) return Outcome::violated;
+  if (!complete || s.vacuous() || s.some_claim_never_decided()) return Outcome::undetermined;
+  return s.assumption_failures > 0 ? Outcome::assumption_fails : Outcome::holds;
 }
 
-ExitCode exit_code(const Examination& e) {
-  if (e.any(Verdict::violated)) return ExitCode::violated;
-  if (e.any(Verdict::assumption_fails)) return ExitCode::assumption_fails;
-  return e.any(Verdict::undetermined) ? ExitCode::undetermined : ExitCode::holds;
+Outcome outcome(const Examination& e) {
+  if (e.any(Verdict::violated)) return Outcome::violated;
+  if (e.any(Verdict::assumption_fails)) return Outcome::assumption_fails;
+  return e.any(Verdict::undetermined) ? Outcome::undetermined : Outcome::holds;
 }
 
-std::string verdict_text(const CampaignSummary& s, Reading reading, std::uint64_t seed, bool complete) {
-  std::string text = fmt::format("{} models, seed {}, reading {}\n\n", s.trials, seed, reading_text(reading));
+std::string verdict_text(const CampaignSummary& s, Reading reading, std::string_view draw, bool complete) {
+  std::string text = fmt::format("{} ({}), reading {}\n\n", counted(s.trials, "model"), draw, reading_text(reading));
   text += fmt::format("  {:<16} {:<32} {:>7} {:>8} {:>8} {:>11}  {:>8} {:>8} {:>8} {:>8}\n", "claim", "", "checked",
                       "violated", "undeter.", "informative", "median", "p99", "max", "at trial");
   for (const Claim& c : claims()) {
@@ -133,7 +153,7 @@ std::string verdict_text(const CampaignSummary& s, Reading reading, std::uint64_
   }
   text +=
       "\n  informative: the bound is below gamma span(R)/(1-gamma); median, p99 and max are of (left - slack) / "
-      "right\n\n";
+      "right\n  What each claim states: verify_bound --explain\n\n";
   text += fmt::format("Q_n settled on {}, cycled on {}{}, neither on {}\n", s.settled, s.cycles, periods(s),
                       s.fate_undetermined);
   text += fmt::format(
@@ -141,41 +161,65 @@ std::string verdict_text(const CampaignSummary& s, Reading reading, std::uint64_
       s.balls_of_several, s.attack_changes_action, s.pessimism_changes_action);
   text += fmt::format("At least one bound informative on {} ({})\n\n", s.any_informative,
                       percent(s.any_informative, s.trials));
-  return text + conclusion(s, seed, complete);
+  return text + conclusion(s, draw, complete);
 }
 
-std::string verdict_text(const TrialRecord& record, Reading reading) {
-  const Examination& e = record.found;
-  std::string text =
-      fmt::format("{}: {} states, {} actions, gamma {:g}, eps {:g}, largest ball {} states\nreading {}\n\n",
-                  record.family, e.states, e.actions, e.discount, e.eps, e.largest_ball, reading_text(reading));
-  text += witness("l_r", e.constants.l_r) + witness("l_p", e.constants.l_p) + witness("K", e.constants.k_tv);
+std::string verdict_text(std::string_view title, const Model<double>& model, const Examination& e, Reading reading) {
+  std::string text = fmt::format("{}: {}, {}, gamma {:g}, eps {:g}, largest ball {}\nreading {}\n\n", title,
+                                 counted(e.states, "state"), counted(e.actions, "action"), e.discount, e.eps,
+                                 counted(e.largest_ball, "state"), reading_text(reading));
+  const auto& constants = e.constants;
+  text += witness("l_r", constants.l_r, model) + witness("l_p", constants.l_p, model);
+  text += witness("K", constants.k_tv, model);
   text += fmt::format("  {:<14} {:.6g}\n  {:<14} {:.6g}   (R from {:.6g} to {:.6g})\n", "L*", e.lipschitz_of_q_star,
                       "span(R)", e.constants.span, e.constants.r_min, e.constants.r_max_signed);
   text += fmt::format("  {:<14} {:.6g}   gamma span(R)/(1-gamma): a bound at or above it is vacuous\n\n", "trivial",
                       e.trivial);
   if (!e.failed_assumption.empty()) return text + "ASSUMPTION FAILS: " + e.failed_assumption + "\n";
-  text += fmt::format("Q_n: {}; {} different pairs; limsup gap {}\n\n", fate_text(e), e.pairs,
+  text += fmt::format("Q_n: {}; {} met; limsup gap {}\n\n", fate_text(e), counted(e.pairs, "policy pair"),
                       e.fate == Fate::undetermined ? "unknown" : fmt::format("{:.6g}", e.gap));
   long vacuous = 0, bounds_checked = 0;
   for (const Claim& c : claims()) {
     const Check& check = e.check(c.id);
-    text += check_row(c, check, e.informative(c.id));
+    text += check_row(c, check, e.informative(c.id), model);
     const bool checked = check.verdict == Verdict::holds || check.verdict == Verdict::violated;
     bounds_checked += c.is_bound && checked;
     vacuous += c.is_bound && checked && !e.informative(c.id);
   }
-  switch (exit_code(e)) {
-    case ExitCode::violated:
+  switch (outcome(e)) {
+    case Outcome::violated:
       return text + "\nVIOLATED: a claim above fails on this model.\n";
-    case ExitCode::undetermined:
+    case Outcome::undetermined:
       return text +
              "\nUNDETERMINED: a budget ran out before every claim was decided; see --max-iterations, "
-             "--max-positions.\n";
+             "--max-period, --max-positions.\n";
     default:
       return text + fmt::format("\nHOLDS on this model, in floating point with certified error{}\n",
                                 vacuous == bounds_checked ? "; but every bound is vacuous here." : ".");
   }
+}
+
+std::string claims_text() {
+  std::string text;
+  for (const Claim& c : claims()) {
+    text += fmt::format("{}: {} ({})\n    {}\n", c.name, c.title, c.reference, c.statement);
+  }
+  return text + R"(
+s, t, a    states and an action; |x_s-x_t| is their distance, and |Q| of a table is its largest absolute entry
+g          gamma, the discount;  |S| the number of states
+eps        radius of the balls: the attacker shows any state within eps of the true one
+l_r, l_p   Lipschitz constants of the rewards and of the transition probabilities P(s'|.,a), the largest over s'
+K          the same of P(.|s,a) in total variation: at most |S| l_p / 2
+R_max      max |R| (--reading corrected) or max(0, max R) (--reading paper, Assumption 2 as printed)
+span(R)    max R - min R
+T*, Q*     the Bellman operator without an attacker, and its fixed point;  V* = max_a Q*;  L* its Lipschitz constant
+Q_n        round n of pessimistic Q-iteration, with pi_n its maximin policy and omega_n the best response to it
+Q^{pi_n o omega_n}        the value of pi_n when omega_n attacks
+Q^{pi_n, best attack}     the value of pi_n against its optimal attacker, the most that an attack can cost
+d_0, u_0   how far the iteration starts off: d_0 = max(0, max Q*), u_0 = max(0, -min Q*), for Q_0 = 0
+rho        the largest distance from a true state to a member of the belief held in it, at most 2 eps
+limsup     over the rounds of the cycle that the policy pairs (pi_n, omega_n) enter; of period 1 when they settle
+)";
 }
 
 }  // namespace maximin

@@ -1,27 +1,33 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
+#include <maximin/models/model.hpp>
 #include <maximin/proofs_check/campaign_summary.hpp>
 #include <maximin/proofs_check/examination.hpp>
 
 namespace maximin {
 
-/// Exit codes of the programs.
-enum class ExitCode { holds = 0, violated = 1, bad_input = 2, undetermined = 3, assumption_fails = 4 };
+/// What an examination or a campaign comes to.
+enum class Outcome { holds, violated, undetermined, assumption_fails };
 
-/// What a campaign's result means to a shell: violated before everything; undetermined when it was interrupted or every
+/// What a campaign comes to: violated before everything; undetermined when it was interrupted or every
 /// bound was vacuous, for then nothing was verified.
-ExitCode exit_code(const CampaignSummary& summary, bool complete);
+Outcome outcome(const CampaignSummary& summary, bool complete);
 
 /// The same for one model. A vacuous bound that holds, holds.
-ExitCode exit_code(const Examination& examination);
+Outcome outcome(const Examination& examination);
 
-/// A campaign for a person to read: a table of claims, fates, regimes, and the verdict last.
-std::string verdict_text(const CampaignSummary& summary, Reading reading, std::uint64_t seed, bool complete);
+/// A campaign for a person to read: a table of claims, fates, regimes, and the verdict last. `draw` are the options of
+/// verify_bound that draw its models, e.g. "--seed 1 --family broad".
+std::string verdict_text(const CampaignSummary& summary, Reading reading, std::string_view draw, bool complete);
 
-/// One model for a person to read: constants with the pairs of states that attain them, every claim with both sides,
-/// and the verdict last.
-std::string verdict_text(const TrialRecord& record, Reading reading);
+/// One model for a person to read, called `title`: constants with the pairs of states that attain them, every claim
+/// with both sides and where it is tightest, states and actions by the model's names, and the verdict last.
+std::string verdict_text(std::string_view title, const Model<double>& model, const Examination& found, Reading reading);
+
+/// What the claims state, in their order, with their references and the symbols that they use.
+std::string claims_text();
 
 }  // namespace maximin

@@ -1,5 +1,6 @@
 #include <maximin/apps/common/interrupt.hpp>
 
+#include <unistd.h>
 #include <csignal>
 
 namespace maximin::apps {
@@ -11,6 +12,9 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only
 
 extern "C" void raise_flag(int) {
   interrupted = true;
+  static constexpr char text[] =
+      "\nstopping once what is under way is safe; a second signal ends the program at once\n";
+  if (write(STDERR_FILENO, text, sizeof text - 1) < 0) return;  // nobody listens
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <maximin/apps/common/program.hpp>
 #include <maximin/models/builtin_models.hpp>
 #include <maximin/models/files/model_file.hpp>
+#include <maximin/models/nearest_name.hpp>
 
 namespace maximin::apps {
 
@@ -87,9 +88,8 @@ Model<double> load_example(const ModelOptions& options) {
 
 }  // namespace
 
-void declare(CLI::App& app, ModelOptions& options, ModelArgument argument) {
-  const char* const name = argument == ModelArgument::positional ? "MODEL,--model" : "--model";
-  app.add_option(name, options.file,
+void declare(CLI::App& app, ModelOptions& options) {
+  app.add_option("MODEL,--model", options.file,
                  "model file: own JSON, gymnasium JSON, Cassandra\n.POMDP or .MDP, PRISM .tra, Storm .drn, .csv, .umb")
       ->type_name("FILE")
       ->group(model_group);

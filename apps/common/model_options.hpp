@@ -25,15 +25,9 @@ struct ModelOptions {
   bool given() const { return !file.empty() || !example.empty(); }
 };
 
-/// How the file is given.
-enum class ModelArgument {
-  positional,  ///< MODEL, or --model MODEL
-  option,      ///< --model MODEL only
-};
-
-/// Adds --model, --example, --discount, --reward-model, --intervals, --metric, --norm and --eps to the app, with checks
-/// of their values. `options` must outlive the parsing.
-void declare(CLI::App& app, ModelOptions& options, ModelArgument argument = ModelArgument::positional);
+/// Adds MODEL (or --model), --example, --discount, --reward-model, --intervals, --metric, --norm and --eps to the app,
+/// with checks of their values. `options` must outlive the parsing.
+void declare(CLI::App& app, ModelOptions& options);
 
 /// Reads the model: file or example, with the discount asked for, and prints what the reader assumed as notes on
 /// standard error. Throws InputError when neither or both are given, and as `load_model`.

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include <maximin/apps/common/program.hpp>
+#include <maximin/models/nearest_name.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::apps {

@@ -11,6 +11,7 @@
 #include <exception>
 #include <vector>
 
+#include <maximin/models/nearest_name.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::apps {
@@ -39,21 +40,6 @@ void say_remarks() {
 void flush_standard_output() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
   throw OutputError(fmt::format("standard output: {}, expected it to be writable", std::strerror(errno)));
-}
-
-std::size_t edit_distance(std::string_view x, std::string_view y) {
-  std::vector<std::size_t> row(y.size() + 1);
-  for (std::size_t j = 0; j <= y.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= x.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= y.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (x[i - 1] == y[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row[y.size()];
 }
 
 /// The subcommand that the command line got to, or the app itself.
@@ -205,18 +191,6 @@ std::string printable(std::string_view text) {
   }
   while (!result.empty() && result.back() == ' ') result.pop_back();
   return result;
-}
-
-std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
-    const std::size_t edits = edit_distance(word, candidate);
-    if (edits >= fewest) continue;
-    fewest = edits;
-    best = candidate;
-  }
-  return best;
 }
 
 }  // namespace maximin::apps

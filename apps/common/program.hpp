@@ -57,7 +57,4 @@ void remark(std::string text);
 /// The text with line breaks as spaces and other control characters as '?': what a file says must not drive a terminal.
 std::string printable(std::string_view text);
 
-/// The candidate that differs from `word` by the fewest edits, if that is few enough to be a slip; else empty.
-std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
-
 }  // namespace maximin::apps

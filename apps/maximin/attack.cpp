@@ -33,9 +33,11 @@ std::string summary_text(const Problem& problem, const CertifiedSolution<double>
   add("myopic", values.myopic);
   add("optimal", values.optimal);
   const double excess = (values.myopic - values.optimal).maxCoeff();
+  const bool costs_nothing = (values.none - values.optimal).maxCoeff() <= 4 * values.error;
   const bool myopic_is_optimal = excess <= 4 * values.error;
   return table.text() +
-         (myopic_is_optimal
+         (costs_nothing ? "No attack costs this agent anything.\n"
+          : myopic_is_optimal
               ? "The myopic attack is optimal here.\n"
               : fmt::format("Planning gains the attacker up to {} over the myopic attack.\n", number(excess)));
 }

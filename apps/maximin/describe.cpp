@@ -6,6 +6,7 @@
 
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/table.hpp>
+#include <maximin/models/nearest_name.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::apps {

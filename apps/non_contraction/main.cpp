@@ -30,8 +30,9 @@ int main(int argc, char** argv) {
   program.footer(examples);
   std::string gamma = "0.95";
   bool json = false;
-  program.add_option("--gamma", gamma, "Discount, 0 <= gamma < 1: a decimal or a fraction")->capture_default_str();
-  program.add_flag("--json", json, "Print one JSON object and nothing else");
+  program.add_option("--gamma", gamma, "discount, 0 <= gamma < 1: a decimal or a fraction\n(default: 0.95)")
+      ->type_name("GAMMA");
+  program.add_flag("--json", json, "one JSON object on standard output, nothing else");
   return apps::run_program(program, argc, argv, [&] {
     const auto discount = apps::parse_discount(gamma);
     apps::print(json ? apps::non_contraction_json(discount) : apps::non_contraction_text(discount));

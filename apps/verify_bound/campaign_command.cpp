@@ -21,8 +21,8 @@
 #include <maximin/proofs_check/report/html_report.hpp>
 #include <maximin/proofs_check/report/round_series.hpp>
 #include <maximin/proofs_check/trial_file.hpp>
-#include <maximin/proofs_check/verdict_text.hpp>
 
+#include "outcome.hpp"
 #include "violation.hpp"
 
 namespace maximin::verify_bound {
@@ -120,7 +120,7 @@ Json summary_json(const Options& options, const CampaignSummary& summary, bool c
             {"maximin", MAXIMIN_VERSION},
             {"configuration", configuration(options)},
             {"complete", complete}};
-  json["exit_code"] = static_cast<int>(exit_code(summary, complete));
+  json["exit_code"] = exit_code(outcome(summary, complete));
   json["summary"] = to_json(summary);
   return json;
 }
@@ -130,11 +130,8 @@ Json summary_json(const Options& options, const CampaignSummary& summary, bool c
 int run_campaign_command(const Options& options) {
   if (!options.save_model.empty()) throw InputError("--save-model: of which trial? expected --replay TRIAL beside it");
   const ModelSource source = model_source(options);
-  examination_options(options);  // refuses bad claims before any file is made
-  {                              // a first model at once, so that bad restrictions end the run before any file is made
-    Stream rng(options.seed, 0);
-    source(rng);
-  }
+  examination_options(options);              // bad claims too
+  draw_trial(campaign(options), source, 0);  // bad restrictions end the run before any file is made
   if (!options.report.empty()) check_folder_of(options.report);
   std::optional<TrialFile> file = trial_file(options);
   const std::vector<TrialRecord> records = gather(options, source, file);
@@ -144,32 +141,26 @@ int run_campaign_command(const Options& options) {
   for (const Claim& c : claims()) {
     const long trial = summary.claims[static_cast<std::size_t>(c.id)].first_violation;
     if (trial < 0) continue;
-    Stream rng(options.seed, static_cast<std::uint64_t>(trial));
-    save_violation(options, source(rng).model, trial, c.id);
+    save_violation(options, draw_trial(campaign(options), source, trial).model, trial, c.id);
   }
   if (options.json) {
     apps::print(apps::json_text(summary_json(options, summary, complete)));
   } else {
-    apps::print(verdict_text(summary, examination_options(options).reading, options.seed, complete));
+    apps::print(verdict_text(summary, examination_options(options).reading, replay_options(options), complete));
   }
   if (!options.report.empty()) {
     apps::write_file(options.report, html_report(configuration(options), records, summary, replay_options(options)),
                      apps::Overwrite::replace);
   }
-  return static_cast<int>(exit_code(summary, complete));
+  return exit_code(outcome(summary, complete));
 }
 
 int run_replay_command(const Options& options) {
-  if (!options.trials_out.empty() || options.resume) {
-    throw InputError("--replay: examines one trial, expected neither --trials-out nor --resume beside it");
-  }
-  const ModelSource source = model_source(options);
-  Stream rng(options.seed, static_cast<std::uint64_t>(*options.replay));
-  const DrawnModel drawn = source(rng);
+  const DrawnModel drawn = draw_trial(campaign(options), model_source(options), *options.replay);
   if (!options.save_model.empty() && std::filesystem::exists(options.save_model)) {
     throw InputError(fmt::format("--save-model: {} exists, expected a new name", options.save_model));
   }
-  const TrialRecord record = run_trial(campaign(options), source, *options.replay);
+  const TrialRecord record = run_trial(campaign(options), drawn, *options.replay);
   if (!options.save_model.empty()) write_model(options.save_model, drawn.model);
   if (!options.report.empty()) {
     const auto rounds = round_series(drawn.model.mdp, make_perturbation(drawn.model), examination_options(options));
@@ -178,14 +169,14 @@ int run_replay_command(const Options& options) {
   if (options.json) {
     Json json = header(options);
     json["format"] = "maximin-trial";
-    json["exit_code"] = static_cast<int>(exit_code(record.found));
+    json["exit_code"] = exit_code(outcome(record.found));
     json["record"] = to_json(record);
     apps::print(apps::json_text(json));
   } else {
-    apps::print(fmt::format("trial {} of seed {}\n{}", record.trial, options.seed,
-                            verdict_text(record, examination_options(options).reading)));
+    const std::string title = fmt::format("trial {} of seed {} ({})", record.trial, options.seed, record.family);
+    apps::print(verdict_text(title, drawn.model, record.found, examination_options(options).reading));
   }
-  return static_cast<int>(exit_code(record.found));
+  return exit_code(outcome(record.found));
 }
 
 }  // namespace maximin::verify_bound

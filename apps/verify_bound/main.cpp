@@ -2,6 +2,7 @@
 #include <string>
 
 #include <maximin/apps/common/program.hpp>
+#include <maximin/proofs_check/verdict_text.hpp>
 
 #include "campaign_command.hpp"
 #include "model_command.hpp"
@@ -16,8 +17,9 @@ constexpr const char* examples = R"(Examples:
                                                    a long run that survives a kill
   verify_bound --family informative --gamma 0.5 --eps 0.1
   verify_bound --seed 1 --replay 17                one trial of a campaign, in full
-  verify_bound --model lake.json --metric hops --eps 1 --discount 0.95
+  verify_bound lake.json --metric hops --eps 1 --discount 0.95
   verify_bound --example one-sided --reading paper Theorem 1 as printed fails
+  verify_bound --explain                           what lemma-1 to F state, and the symbols
 
 Exit codes: 0 holds, 1 a claim is violated, 2 bad usage or input, 3 undetermined, 4 an assumption of a claim fails)";
 
@@ -30,7 +32,11 @@ int run(int argc, char** argv) {
   program.footer(examples);
   verify_bound::Options options;
   verify_bound::declare(program, options);
-  return apps::run_program(program, argc, argv, [&] {
+  return apps::run_program(program, argc, argv, [&]() -> int {
+    if (options.explain) {
+      apps::print(claims_text());
+      return apps::ExitCode::success;
+    }
     verify_bound::check_combination(program, options);
     if (options.model.given()) return verify_bound::run_model_command(options);
     if (options.replay) return verify_bound::run_replay_command(options);

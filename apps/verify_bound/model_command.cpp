@@ -7,7 +7,8 @@
 #include <maximin/apps/common/program.hpp>
 #include <maximin/proofs_check/report/html_report.hpp>
 #include <maximin/proofs_check/report/round_series.hpp>
-#include <maximin/proofs_check/verdict_text.hpp>
+
+#include "outcome.hpp"
 
 namespace maximin::verify_bound {
 
@@ -15,7 +16,7 @@ int run_model_command(const Options& options) {
   const Model<double> model = apps::load(options.model);
   const Perturbation<double> perturbation = apps::make_perturbation(model, options.model);
   const std::string source = options.model.file.empty() ? options.model.example : options.model.file;
-  TrialRecord record{0, source, examine(model.mdp, perturbation, examination_options(options))};
+  const TrialRecord record{0, source, examine(model.mdp, perturbation, examination_options(options))};
   nlohmann::ordered_json how = configuration(options);
   how["model"] = source;
   if (!options.report.empty()) {
@@ -25,15 +26,15 @@ int run_model_command(const Options& options) {
   if (options.json) {
     nlohmann::ordered_json json{
         {"format", "maximin-verdict"}, {"version", 1}, {"maximin", MAXIMIN_VERSION}, {"configuration", how}};
-    json["exit_code"] = static_cast<int>(exit_code(record.found));
+    json["exit_code"] = exit_code(outcome(record.found));
     json["notes"] = model.notes;
     json["record"] = to_json(record);
     apps::print(apps::json_text(json));
   } else {
-    record.family = apps::printable(source);
-    apps::print(verdict_text(record, examination_options(options).reading));
+    const std::string title = apps::printable(apps::title(model, options.model));
+    apps::print(verdict_text(title, model, record.found, examination_options(options).reading));
   }
-  return static_cast<int>(exit_code(record.found));
+  return exit_code(outcome(record.found));
 }
 
 }  // namespace maximin::verify_bound

@@ -63,6 +63,12 @@ void declare_checks(CLI::App& program, Options& o) {
       ->type_name("N")
       ->group(group);
   program
+      .add_option("--max-period", o.max_period,
+                  fmt::format("longest cycle of policy pairs that is looked for\n(default: {})", o.max_period))
+      ->check(apps::whole_number(1, 10'000))
+      ->type_name("N")
+      ->group(group);
+  program
       .add_option(
           "--max-positions", o.max_positions,
           fmt::format("reachable (state, belief) pairs before claim F is\nundetermined (default: {})", o.max_positions))
@@ -130,7 +136,8 @@ void declare_output(CLI::App& program, Options& o) {
       ->group(group);
   program.add_flag("--resume", o.resume, "complete the file of --trials-out if an earlier run was cut\nshort")
       ->group(group);
-  program.add_option("--report", o.report, "write a self-contained HTML page with plots")
+  program
+      .add_option("--report", o.report, "write a self-contained HTML page with plots, in place of\none of that name")
       ->type_name("FILE")
       ->group(group);
   program.add_option("--save-model", o.save_model, "with --replay: write the model of that trial")
@@ -142,6 +149,7 @@ void declare_output(CLI::App& program, Options& o) {
       ->check(apps::existing_folder())
       ->type_name("DIR")
       ->group(group);
+  program.add_flag("--explain", o.explain, "print what each claim states, and its symbols; nothing else")->group(group);
   program.add_flag("--quiet", o.quiet, "no progress bar")->group(group);
 }
 
@@ -150,7 +158,7 @@ void declare_output(CLI::App& program, Options& o) {
 void declare(CLI::App& program, Options& o) {
   declare_checks(program, o);
   declare_campaign(program, o);
-  apps::declare(program, o.model, apps::ModelArgument::option);
+  apps::declare(program, o.model);
   declare_output(program, o);
 }
 
@@ -159,6 +167,9 @@ void check_combination(const CLI::App& program, const Options& o) {
     const std::string where = "on random models";
     apps::refuse_given(program, {"--discount"}, where, "--gamma, or --model or --example beside it");
     apps::refuse_given(program, {"--metric", "--reward-model", "--intervals"}, where, "--model or --example beside it");
+    if (!o.replay) return;
+    apps::refuse_given(program, {"--trials", "--threads", "--trials-out", "--resume", "--violation-dir"},
+                       "beside --replay", "it without --replay only");
     return;
   }
   const std::string where = o.model.file.empty() ? "beside --example" : "beside --model";
@@ -176,6 +187,7 @@ ExaminationOptions examination_options(const Options& o) {
   e.tie = o.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
   e.max_iterations = o.max_iterations;
   e.max_belief_positions = o.max_positions;
+  e.max_period = o.max_period;
   if (!o.claims.empty()) e.only.emplace();
   for (const std::string& name : o.claims) {
     const auto id = find_claim(name);
@@ -210,6 +222,7 @@ nlohmann::ordered_json configuration(const Options& o) {
           {"claims", o.claims},
           {"tie", o.tie},
           {"max_iterations", o.max_iterations},
+          {"max_period", o.max_period},
           {"max_positions", o.max_positions},
           {"trials", o.trials},
           {"seed", o.seed},
@@ -240,6 +253,10 @@ std::string replay_options(const Options& o) {
   if (o.successors) add("--successors", *o.successors);
   if (o.reading != "corrected") add("--reading", o.reading);
   if (o.tie != "lowest") add("--tie", o.tie);
+  const Options unchanged;
+  if (o.max_iterations != unchanged.max_iterations) add("--max-iterations", o.max_iterations);
+  if (o.max_period != unchanged.max_period) add("--max-period", o.max_period);
+  if (o.max_positions != unchanged.max_positions) add("--max-positions", o.max_positions);
   return text;
 }
 

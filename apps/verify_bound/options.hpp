@@ -23,6 +23,7 @@ struct Options {
   std::vector<std::string> claims;
   std::string tie = "lowest";
   long max_iterations = 20'000;
+  long max_period = 64;
   long max_positions = 20'000;
 
   // On random models
@@ -44,6 +45,7 @@ struct Options {
   std::string trials_out, report, save_model;
   std::string violation_dir = ".";
   bool resume = false;
+  bool explain = false;
   bool quiet = false;
 };
 

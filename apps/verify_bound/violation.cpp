@@ -1,6 +1,8 @@
 #include "violation.hpp"
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -12,10 +14,33 @@
 #include <maximin/proofs_check/examination.hpp>
 
 namespace maximin::verify_bound {
-void write_model(const std::filesystem::path& path, const Model<double>& model) {
+namespace {
+
+std::string file_text(const Model<double>& model) {
   std::ostringstream text;
   write_maximin_json(model, text);
-  apps::write_file(path, text.str(), apps::Overwrite::replace);
+  return text.str();
+}
+
+bool holds_text(const std::filesystem::path& path, const std::string& text) {
+  std::ifstream in(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(in), {}) == text;
+}
+
+/// STEM.json, or STEM-2.json and so on: the first name that is free or that holds this text already, so that what
+/// another campaign found with the same seed stays.
+std::filesystem::path name_for(const std::filesystem::path& stem, const std::string& text) {
+  std::filesystem::path path = stem.string() + ".json";
+  for (int k = 2; std::filesystem::exists(path) && !holds_text(path, text); ++k) {
+    path = fmt::format("{}-{}.json", stem.string(), k);
+  }
+  return path;
+}
+
+}  // namespace
+
+void write_model(const std::filesystem::path& path, const Model<double>& model) {
+  apps::write_file(path, file_text(model), apps::Overwrite::replace);
 }
 
 void save_violation(const Options& options, Model<double> model, long trial, ClaimId id) {
@@ -37,9 +62,9 @@ void save_violation(const Options& options, Model<double> model, long trial, Cla
   const State states = model.mdp.states();
   model = shrink(std::move(model), still_violates);
   model.name = fmt::format("violates {} (seed {}, trial {})", claim(id).name, options.seed, trial);
-  const std::filesystem::path path = (std::filesystem::path(options.violation_dir) /
-                                      fmt::format("violation-{}-{}-{}.json", options.seed, trial, claim(id).name))
-                                         .lexically_normal();
+  const std::string name = fmt::format("violation-{}-{}-{}", options.seed, trial, claim(id).name);
+  const std::filesystem::path path =
+      name_for((std::filesystem::path(options.violation_dir) / name).lexically_normal(), file_text(model));
   write_model(path, model);
   const std::string reading = options.reading == "corrected" ? "" : " --reading " + options.reading;
   fmt::print(stderr, "A model that violates {}, shrunk from {} to {} states: {}\nSee it: verify_bound --model {}{}\n",

@@ -115,7 +115,7 @@ std::string verdict(const CampaignSummary& s, long asked, const Replay& replay) 
          "A bound at or above the trivial γ span(R)/(1-γ) holds whatever is done. Ask for a smaller eps, γ or l_p.",
          rest});
   }
-  const bool clean = exit_code(s, s.trials >= asked) == ExitCode::holds;
+  const bool clean = outcome(s, s.trials >= asked) == Outcome::holds;
   return verdict_box(clean ? "" : "warn",
                      {fmt::format("No violation on {}.", counted(s.trials, "random model", "random models")),
                       informative_sentence(s) + " " + upper_limit_sentence(s), rest});

@@ -10,12 +10,14 @@ A test file lists its cases and hands them to main():
 
 import argparse
 import difflib
+import glob
 import json
 import math
 import os
 import re
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass, field
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -138,3 +140,33 @@ def report(checks):
     if not checks:
         sys.exit("no checks")
     sys.exit(1 if failed else 0)
+
+
+def model(**changes):
+    """A small model file, valid but for the changes."""
+    m = {"format": "maximin-mdp", "version": 1, "states": 2, "actions": 1, "discount": 0.5,
+         "rewards": [[0], [1]], "transitions": [[0, 0, 1, 1], [1, 0, 1, 1]]}
+    m.update(changes)
+    return json.dumps({k: v for k, v in m.items() if v is not None})
+
+
+def shared_models(folder):
+    suffixes = (".POMDP", ".MDP", ".json", ".tra", ".drn", ".umb", ".csv")
+    found = sorted(glob.glob(os.path.join(folder, "**", "*"), recursive=True))
+    return [f for f in found if f.endswith(suffixes)]
+
+
+def main(goldens, refusals, checks, check_shared_model):
+    """Tests the program of the command line: on the shared models if they are given, else in all other ways. `checks` are
+    functions of the program, and `check_shared_model` one of the program and a file, that return lists of problems."""
+    arguments = options()
+    program = os.path.abspath(arguments.program)
+    if arguments.shared_models:
+        report([(path, lambda path=path: check_shared_model(program, path)) for path in shared_models(arguments.shared_models)])
+    cases = [(case.name, lambda case=case: check_golden(program, case, arguments.regenerate)) for case in goldens]
+    if arguments.regenerate:
+        report(cases)
+    with tempfile.TemporaryDirectory() as folder:
+        cases += [(" ".join(case.arguments), lambda case=case: check_refusal(program, case, folder)) for case in refusals]
+        cases += [(check.__name__, lambda check=check: check(program)) for check in checks]
+        report(cases)

@@ -1,13 +1,12 @@
 """What maximin prints, and what it says to bad usage and bad input."""
 
-import glob
 import json
 import os
 import signal
 import subprocess
 import tempfile
 
-from cli import Golden, Refusal, check_golden, check_refusal, no_constants, options, report, run
+from cli import Golden, Refusal, main, model, no_constants, run
 
 COMMANDS = ["solve", "attack", "belief", "simulate", "learn", "convert", "info", "examples"]
 
@@ -50,14 +49,6 @@ GOLDEN = [
     Golden("convert_hops.json", ["convert", "no_geometry.json", "--metric", "hops", "--eps", "2", "--discount", "0.25"],
            stderr="note: discount: 0.25 as asked for, instead of 0.75 in the file\n"),
 ]
-
-
-def model(**changes):
-    """A small model file, valid but for the changes."""
-    m = {"format": "maximin-mdp", "version": 1, "states": 2, "actions": 1, "discount": 0.5,
-         "rewards": [[0], [1]], "transitions": [[0, 0, 1, 1], [1, 0, 1, 1]]}
-    m.update(changes)
-    return json.dumps({k: v for k, v in m.items() if v is not None})
 
 
 
@@ -327,31 +318,9 @@ def check_shared_model(program, path):
     return problems
 
 
-def shared_models(folder):
-    suffixes = (".POMDP", ".MDP", ".json", ".tra", ".drn", ".umb", ".csv")
-    found = sorted(glob.glob(os.path.join(folder, "**", "*"), recursive=True))
-    return [f for f in found if f.endswith(suffixes)]
-
-
-def main():
-    arguments = options()
-    program = os.path.abspath(arguments.program)
-    checks = []
-    if arguments.shared_models:
-        for path in shared_models(arguments.shared_models):
-            checks.append((path, lambda path=path: check_shared_model(program, path)))
-        report(checks)
-    for case in GOLDEN:
-        checks.append((case.name, lambda case=case: check_golden(program, case, arguments.regenerate)))
-    with tempfile.TemporaryDirectory() as folder:
-        for case in REFUSALS if not arguments.regenerate else []:
-            checks.append((" ".join(case.arguments), lambda case=case: check_refusal(program, case, folder)))
-        if not arguments.regenerate:
-            for check in (check_output_failures, check_convert, check_policy_file, check_numerals, check_largest_seed, check_recurring,
-                          check_graph, check_interrupt):
-                checks.append((check.__name__, lambda check=check: check(program)))
-        report(checks)
+CHECKS = [check_output_failures, check_convert, check_policy_file, check_numerals, check_largest_seed, check_recurring,
+          check_graph, check_interrupt]
 
 
 if __name__ == "__main__":
-    main()
+    main(GOLDEN, REFUSALS, CHECKS, check_shared_model)

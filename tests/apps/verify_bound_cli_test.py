@@ -3,13 +3,13 @@
 import glob
 import json
 import os
+import re
 import signal
 import subprocess
 import tempfile
 import time
 
-from cli import Golden, Refusal, check_golden, check_refusal, no_constants, options, report, run
-from maximin_cli_test import model, shared_models
+from cli import Golden, Refusal, main, model, no_constants, run
 
 GOLDEN = [
     Golden("verify_bound_help.txt", ["--help"]),
@@ -18,6 +18,8 @@ GOLDEN = [
     Golden("verify_bound_one_sided_paper.json", ["--model", "one_sided.json", "--reading", "paper", "--json"], code=1),
     Golden("verify_bound_one_sided_paper.txt", ["--model", "one_sided.json", "--reading", "paper"], code=1),
     Golden("verify_bound_cycling.txt", ["--example", "cycling"]),
+    Golden("verify_bound_named.txt", ["slippery_grid.json"]),
+    Golden("verify_bound_explain.txt", ["--explain"]),
 ]
 
 # Options of the one kind of run that would be ignored in the other.
@@ -55,7 +57,10 @@ REFUSALS = [
     Refusal(["--eps", "-1"], 2, "--eps"),
     Refusal(["--resume"], 2, "--trials-out"),
     Refusal(["--save-model", "m.json"], 2, "--replay"),
-    Refusal(["--replay", "1", "--trials-out", "t.jsonl"], 2, "--trials-out"),
+    *[Refusal(["--replay", "1", *given], 2, "%s: has no effect beside --replay" % given[0])
+      for given in (["--trials-out", "t.jsonl"], ["--trials", "5"], ["--threads", "1"], ["--resume"], ["--violation-dir", "."])],
+    Refusal(["m.json"], 2, "m.json: $.epsilon: unknown name, expected 'eps'?", {"m.json": model(epsilon=1)}),
+    Refusal(["m.json", "--model", "m.json"], 2, "given more than once", {"m.json": model()}),
     Refusal(["--trials", "1", "--trials-out", "no-such-folder/t.jsonl"], 2, "no-such-folder/t.jsonl"),
     Refusal(["--trials", "1", "--violation-dir", "no-such-folder"], 2,
             "--violation-dir: no-such-folder: no such folder, expected one that exists"),
@@ -166,6 +171,41 @@ def check_violation(program):
         return [] if ok else ["%d states, exit codes %d and %d" % (states, again.returncode, corrected.returncode)]
 
 
+def check_violations_kept(program):
+    """Another campaign with the same seed does not overwrite what the first found; the same one adds nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        def found(*more):
+            run(program, ["--family", "costs", "--reading", "paper", "--trials", "60", "--claims", "theorem-1", "--quiet",
+                          *more], cwd=folder)
+            return {f: read(folder, f) for f in sorted(os.listdir(folder))}
+        first, again, other = found(), found(), found("--gamma", "0.4")
+        problems = []
+        if len(first) != 1 or again != first:
+            problems.append("files %s, then %s, expected the same one" % (list(first), list(again)))
+        if not other.items() > first.items():
+            problems.append("files %s, expected one more than %s" % (list(other), list(first)))
+        return problems
+
+
+def check_replay_hint(program):
+    """The command that the verdict names shows the violation again."""
+    with tempfile.TemporaryDirectory() as folder:
+        result = run(program, ["--family", "costs", "--reading", "paper", "--trials", "60", "--claims", "theorem-1",
+                               "--gamma", "0.3:0.6", "--max-period", "32", "--quiet"], cwd=folder)
+        hint = re.search(r"the first: verify_bound (.*)\n", result.stdout.decode())
+        if not hint:
+            return ["no hint in %r" % result.stdout]
+        again = run(program, hint.group(1).split() + ["--claims", "theorem-1"], cwd=folder)
+        return [] if again.returncode == 1 else ["%r: exit code %d" % (hint.group(1), again.returncode)]
+
+
+def check_explain(program):
+    """Each name that --claims takes is explained."""
+    text = run(program, ["--explain"]).stdout.decode()
+    names = "lemma-1 lemma-1-iterates lemma-2 lemma-3 theorem-1 A B C D E F".split()
+    return ["%s is not explained" % n for n in names if not re.search(r"^%s: " % n, text, re.M)]
+
+
 def check_replay(program):
     """A trial by itself gives the record of the campaign; its model, saved, gives the same verdict."""
     with tempfile.TemporaryDirectory() as folder:
@@ -227,31 +267,18 @@ def check_shared_model(program, path):
     return [] if set(undetermined) <= {"F"} else ["undetermined: %s" % undetermined]
 
 
-CHECKS = [check_default_family, check_threads, check_resume, check_violation, check_replay, check_vacuous,
-          check_assumption, check_terminal, check_report]
+def check_sigkill(program):
+    return check_kill(program, signal.SIGKILL, -signal.SIGKILL)
 
 
-def main():
-    arguments = options()
-    program = os.path.abspath(arguments.program)
-    checks = []
-    if arguments.shared_models:
-        for path in shared_models(arguments.shared_models):
-            checks.append((path, lambda path=path: check_shared_model(program, path)))
-        report(checks)
-    for case in GOLDEN:
-        checks.append((case.name, lambda case=case: check_golden(program, case, arguments.regenerate)))
-    if arguments.regenerate:
-        report(checks)
-    with tempfile.TemporaryDirectory() as folder:
-        for case in REFUSALS:
-            checks.append((" ".join(case.arguments), lambda case=case: check_refusal(program, case, folder)))
-        for check in CHECKS:
-            checks.append((check.__name__, lambda check=check: check(program)))
-        checks.append(("SIGKILL", lambda: check_kill(program, signal.SIGKILL, -signal.SIGKILL)))
-        checks.append(("SIGINT", lambda: check_kill(program, signal.SIGINT, 3)))
-        report(checks)
+def check_sigint(program):
+    return check_kill(program, signal.SIGINT, 3)
+
+
+CHECKS = [check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
+          check_replay_hint, check_vacuous, check_assumption, check_terminal, check_report, check_explain, check_sigkill,
+          check_sigint]
 
 
 if __name__ == "__main__":
-    main()
+    main(GOLDEN, REFUSALS, CHECKS, check_shared_model)

@@ -43,7 +43,7 @@ TEST(NegativeControl, Theorem1AsPrintedFailsForOneSidedRewards) {
   EXPECT_EQ(theorem.verdict, Verdict::violated);
   EXPECT_NEAR(theorem.left, 10, 1e-9);
   EXPECT_EQ(theorem.right, 6);
-  EXPECT_EQ(exit_code(printed), ExitCode::violated);
+  EXPECT_EQ(outcome(printed), Outcome::violated);
   EXPECT_EQ(violated_claims(printed), (std::set{ClaimId::lemma_1, ClaimId::lemma_2, ClaimId::theorem_1}))
       << "what the paper prints, and nothing of the strengthenings";
 
@@ -51,7 +51,7 @@ TEST(NegativeControl, Theorem1AsPrintedFailsForOneSidedRewards) {
   EXPECT_EQ(corrected.check(ClaimId::theorem_1).verdict, Verdict::holds);
   EXPECT_NEAR(corrected.check(ClaimId::theorem_1).left, 10, 1e-9);
   EXPECT_EQ(violated_claims(corrected), std::set<ClaimId>());
-  EXPECT_EQ(exit_code(corrected), ExitCode::holds);
+  EXPECT_EQ(outcome(corrected), Outcome::holds);
 }
 
 /// The trap holds every claim, and every claim that has 2 eps in it fails with eps.

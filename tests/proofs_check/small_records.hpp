@@ -23,7 +23,7 @@ inline std::vector<TrialRecord> small_records(long trials, std::optional<std::se
   Campaign campaign;
   campaign.examination.only = std::move(only);
   std::vector<TrialRecord> records;
-  for (long k = 0; k < trials; ++k) records.push_back(run_trial(campaign, small_source, k));
+  for (long k = 0; k < trials; ++k) records.push_back(run_trial(campaign, draw_trial(campaign, small_source, k), k));
   return records;
 }
 

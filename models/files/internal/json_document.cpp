@@ -1,4 +1,5 @@
 #include <maximin/models/files/internal/json_document.hpp>
+#include <maximin/models/nearest_name.hpp>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -234,7 +235,7 @@ JsonValue JsonValue::member(std::string_view name, std::string_view expected) co
 void JsonValue::require_known_members(std::span<const std::string_view> known) const {
   for (const JsonValue value : *this) {
     if (std::find(known.begin(), known.end(), value.key()) != known.end()) continue;
-    const std::string near = nearest(value.key(), known);
+    const std::string near = nearest_name(value.key(), {known.begin(), known.end()});
     value.fail(near.empty() ? fmt::format("unknown name, expected one of {}", fmt::join(known, ", "))
                             : fmt::format("unknown name, expected '{}'?", near));
   }

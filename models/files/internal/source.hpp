@@ -54,7 +54,4 @@ std::string_view without_mark(std::string_view text);
 /// the characters that turn the direction of the text after them (U+202A to U+202E, U+2066 to U+2069).
 bool is_name(std::string_view text);
 
-/// The candidate nearest to `word` by edit distance, or an empty string when none is near.
-std::string nearest(std::string_view word, std::span<const std::string_view> candidates);
-
 }  // namespace maximin::internal
