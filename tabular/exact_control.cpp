@@ -46,7 +46,7 @@ Policy floating_point_policy(const ControlProblem<Rational>& problem) {
 /// The choice with the best backup, the first or the last of them.
 Action best_choice(const ControlProblem<Rational>& problem, const ScaledTable& q, State s, TieBreak tie) {
   const auto better = [&](Action x, Action y) {
-    return problem.maximises() ? q.numerator(s, x) > q.numerator(s, y) : q.numerator(s, x) < q.numerator(s, y);
+    return problem.maximises() ? q.numerators(s, x) > q.numerators(s, y) : q.numerators(s, x) < q.numerators(s, y);
   };
   const auto list = problem.choices(s);
   Action best = list.front();
@@ -59,10 +59,10 @@ Action best_choice(const ControlProblem<Rational>& problem, const ScaledTable& q
 /// Moves to strictly better choices. Returns whether there was one.
 bool improve(const ControlProblem<Rational>& problem, const ScaledTable& q, Policy& policy) {
   bool changed = false;
-  for (State s = 0; s < q.states(); ++s) {
+  for (State s = 0; s < q.numerators.rows(); ++s) {
     Action& current = policy[static_cast<std::size_t>(s)];
     const Action best = best_choice(problem, q, s, TieBreak::lowest_index);
-    if (q.numerator(s, best) == q.numerator(s, current)) continue;
+    if (q.numerators(s, best) == q.numerators(s, current)) continue;
     current = best;
     changed = true;
   }
@@ -93,7 +93,7 @@ CertifiedSolution<Rational> iterate_policies_exactly(const ControlProblem<Ration
     scaled.backup(ScaledValues(solution.v), q);
     ++solution.sweeps;
   } while (improve(problem, q, solution.policy));
-  for (State s = 0; s < q.states(); ++s) {
+  for (State s = 0; s < q.numerators.rows(); ++s) {
     solution.policy[static_cast<std::size_t>(s)] = best_choice(problem, q, s, options.tie);
   }
   solution.q = q.rational();

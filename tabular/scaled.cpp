@@ -32,11 +32,7 @@ Values<Rational> ScaledValues::rational() const {
 }
 
 QTable<Rational> ScaledTable::rational() const {
-  QTable<Rational> q(states(), actions());
-  for (State s = 0; s < states(); ++s) {
-    for (Action a = 0; a < actions(); ++a) q(s, a) = (*this)(s, a);
-  }
-  return q;
+  return numerators.unaryExpr([&](const Integer& x) { return Rational(x, denominator); });
 }
 
 ScaledMdp::ScaledMdp(const FiniteMdp<Rational>& mdp) : states_(mdp.states()), actions_(mdp.actions()) {
@@ -67,7 +63,7 @@ void ScaledMdp::backup(const ScaledValues& v, ScaledTable& q) const {
   const Integer common = lcm(v.denominator, reward_denominator_);
   const Integer widen = common / v.denominator;
   const Integer reward_weight = growth_ * (common / reward_denominator_);
-  if (q.states() != states_ || q.actions() != actions_) q = ScaledTable(states_, actions_);
+  q.numerators.resize(states_, actions_);
   q.denominator = growth_ * common;
   std::size_t row = 0;
   for (State s = 0; s < states_; ++s) {
@@ -78,7 +74,7 @@ void ScaledMdp::backup(const ScaledValues& v, ScaledTable& q) const {
       }
       if (widen != 1) sum *= widen;
       add_product(sum, rewards_[row], reward_weight);
-      q.numerator(s, a) = std::move(sum);
+      q.numerators(s, a) = std::move(sum);
     }
   }
 }

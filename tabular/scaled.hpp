@@ -25,29 +25,12 @@ struct ScaledValues {
 };
 
 /// A function of (state, action) over one denominator > 0, |S| x |A|, not in lowest terms.
-class ScaledTable {
- public:
-  ScaledTable() = default;
-  /// All zero.
-  ScaledTable(State states, Action actions)
-      : actions_(actions), numerators_(static_cast<std::size_t>(states) * static_cast<std::size_t>(actions)) {}
-
-  State states() const { return actions_ == 0 ? 0 : static_cast<State>(numerators_.size()) / actions_; }
-  Action actions() const { return actions_; }
-  Integer& numerator(State s, Action a) { return numerators_[index(s, a)]; }
-  const Integer& numerator(State s, Action a) const { return numerators_[index(s, a)]; }
-  Rational operator()(State s, Action a) const { return Rational(numerator(s, a), denominator); }
-  QTable<Rational> rational() const;
-
+struct ScaledTable {
+  QTable<Integer> numerators;
   Integer denominator{1};
 
- private:
-  std::size_t index(State s, Action a) const {
-    return static_cast<std::size_t>(s) * static_cast<std::size_t>(actions_) + static_cast<std::size_t>(a);
-  }
-
-  Action actions_ = 0;
-  std::vector<Integer> numerators_;
+  Rational operator()(State s, Action a) const { return Rational(numerators(s, a), denominator); }
+  QTable<Rational> rational() const;
 };
 
 /// A model in integers: probabilities over one denominator D_P, rewards over another, gamma = a/b.
