@@ -30,10 +30,10 @@ std::string shown(const Rational& x) {
 std::string limit_text(const Certificate& c) {
   const auto rounds = c.rounds.size();
   if (!c.limit) return fmt::format("Q_n: undetermined after {} exact rounds (--max-rounds, --max-period)", rounds);
-  const std::string ties = c.limit->unique ? "no ties on it" : "choices tie on it, and lead to the same backups";
+  const std::string ties = c.limit->all_attained() ? "" : "; choices tie on it that lead to the same backups";
   return c.limit->period == 1
-             ? fmt::format("Q_n: settles, proved from n = {} on; {}", rounds, ties)
-             : fmt::format("Q_n: cycles with period {}, proved from n = {} on; {}", c.limit->period, rounds, ties);
+             ? fmt::format("Q_n: settles, proved from n = {} on{}", rounds, ties)
+             : fmt::format("Q_n: cycles with period {}, proved from n = {} on{}", c.limit->period, rounds, ties);
 }
 
 std::string verdicts_text(const Certificate& c) {

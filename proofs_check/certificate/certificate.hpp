@@ -35,7 +35,10 @@ struct CertifiedLimit {
   std::vector<Values<Rational>> orbit;  ///< U_j, by phase
   std::vector<Values<Rational>> low;    ///< below the values of every policy the phase may use
   std::vector<std::optional<Values<Rational>>> fixed;  ///< of the policy pair of the phase, where it is one
-  bool unique = false;                                 ///< no ties: `low` are the values against the optimal attacker
+  /// By phase, whether `low` are the values of its policy against the optimal attacker: no choices tie, or k = 1.
+  std::vector<bool> attained;
+
+  bool all_attained() const;
 };
 
 /// The game of the belief-maximin agent against any attacker.

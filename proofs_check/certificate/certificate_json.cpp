@@ -102,6 +102,10 @@ Json claim_json(const CertifiedClaim& c) {
 
 }  // namespace
 
+bool CertifiedLimit::all_attained() const {
+  return std::all_of(attained.begin(), attained.end(), [](bool x) { return x; });
+}
+
 bool Certificate::any(Verdict verdict) const {
   return std::any_of(claims.begin(), claims.end(), [&](const CertifiedClaim& c) { return c.verdict == verdict; });
 }

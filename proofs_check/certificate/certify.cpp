@@ -230,47 +230,39 @@ class Certifier {
     const CertifiedLimit& limit = *result_.limit;
     const long n = static_cast<long>(result_.rounds.size() + j);
     const ScaledTable low = backup(limit.low[j]);
-    const bool exact_low = limit.unique || limit.period == 1;
+    const bool attained = limit.attained[j];
     const ScaledTable& q = orbit_->tables[j];
 
     Instance iterates = lemma_1_iterates_->tightest(q, 2 * off_, n);
     iterates.decisive = off_ == 0;
     at(ClaimId::lemma_1_iterates).observe(std::move(iterates));
     lemma_2(n, q, orbit_->tables[(j + 1) % orbit_->tables.size()], 2 * gamma_ * off_, off_ == 0);
-    if (limit.fixed[j]) {
-      const ScaledTable fixed = backup(*limit.fixed[j]);
-      at(ClaimId::lemma_1).observe(lemma_1_->tightest(fixed, 0, n));
-      Instance on_low = lemma_1_->tightest(low, 0, n);
-      on_low.decisive = exact_low;
-      at(ClaimId::lemma_1).observe(std::move(on_low));
-      at(ClaimId::theorem_1).observe(largest_difference(optimal_, fixed, n, bounds::theorem_1(gamma_, delta_printed_)));
+    if (limit.fixed[j] && attained) {
+      at(ClaimId::lemma_1).observe(lemma_1_->tightest(backup(*limit.fixed[j]), 0, n));
+      at(ClaimId::lemma_1).observe(lemma_1_->tightest(low, 0, n));
     } else {
       at(ClaimId::lemma_1).undecided();
-      at(ClaimId::theorem_1)
-          .observe(open(largest_difference(optimal_, low, n, bounds::theorem_1(gamma_, delta_printed_))));
     }
+    const Rational bound = bounds::theorem_1(gamma_, delta_printed_);
+    Instance gap = largest_difference(optimal_, limit.fixed[j] ? backup(*limit.fixed[j]) : low, n, bound);
+    gap.decisive = limit.fixed[j].has_value();
+    at(ClaimId::theorem_1).observe(std::move(gap));
     const auto loss = [&](ClaimId id, const Rational& right) {
       Instance instance = largest_difference(optimal_, low, n, right);
-      instance.decisive = exact_low;
+      instance.decisive = attained;
       at(id).observe(std::move(instance));
     };
     loss(ClaimId::a_optimal_attacker, bounds::theorem_1(gamma_, delta_sound_));
     loss(ClaimId::b_one_sided, bounds::theorem_1_one_sided(gamma_, delta_sound_));
-    loss(ClaimId::c_finite_n, least_from_now_on(delta_repaired_));
-    loss(ClaimId::d_total_variation, least_from_now_on(delta_tv_));
+    loss(ClaimId::c_finite_n, least_from(n, delta_repaired_));
+    loss(ClaimId::d_total_variation, least_from(n, delta_tv_));
   }
 
-  /// The bound of C changes from round to round in one direction: its least value from N on is that of N or its limit.
-  Rational least_from_now_on(const Rational& delta) const {
-    const auto now = static_cast<long>(result_.rounds.size());
+  /// The bound of C changes from round to round in one direction: its least value from n on is that of n or its limit.
+  Rational least_from(long n, const Rational& delta) const {
     const Rational rest = 1 - gamma_;
-    return std::min(bounds::finite_n(gamma_, delta, start_, Rational(0), now),
+    return std::min(bounds::finite_n(gamma_, delta, start_, Rational(0), n),
                     Rational((gamma_ * delta / rest + delta) / rest));
-  }
-
-  static Instance open(Instance instance) {
-    instance.decisive = false;
-    return instance;
   }
 
   // ---- E and F ----

@@ -141,11 +141,11 @@ class Settling {
   void find_choices() {
     result_.choices.assign(phases(), {});
     result_.provoked.assign(phases(), {});
-    result_.unique = true;
+    result_.unique.assign(phases(), true);
     for (std::size_t j = 0; j < phases(); ++j) {
       for (State t = 0; t < mdp_.states(); ++t) {
         result_.choices[j].push_back(choices_at(orbit_.tables[j], t));
-        result_.unique = result_.unique && result_.choices[j].back().size() == 1;
+        if (result_.choices[j].back().size() > 1) result_.unique[j] = false;
       }
       for (State s = 0; s < mdp_.states(); ++s) result_.provoked[j].push_back(provoked_in(j, s));
     }
@@ -347,12 +347,12 @@ CertifiedLimit certify_limit(const FiniteMdp<Rational>& mdp, const Perturbation<
   limit.period = orbit.period();
   limit.radius = orbit.radius;
   limit.orbit = orbit.values;
-  limit.unique = phases.unique;
   for (std::size_t j = 0; j < orbit.tables.size(); ++j) {
     const ControlProblem<Rational> attacker(mdp, ControlProblem<Rational>::Player::minimise,
                                             provokable(balls, phases.choices[j]));
     limit.low.push_back(internal::iterate_policies(attacker, SolverOptions{}).v);
     const auto policy = action_of_pair(balls, phases, j, tie);
+    limit.attained.push_back(phases.unique[j] || orbit.period() == 1);
     auto& fixed = limit.fixed.emplace_back();
     if (policy) {
       fixed = internal::solve_policy_values_exactly(mdp, *policy);

@@ -32,7 +32,8 @@ struct SettledPhases {
   QTable<int> classes;                                     ///< entries that stay equal for ever have equal numbers
   std::vector<std::vector<std::vector<Action>>> choices;   ///< C_j(t), by phase and observation, ascending
   std::vector<std::vector<std::vector<Action>>> provoked;  ///< A_j(s), by phase and true state, ascending
-  bool unique = false;                                     ///< every C_j(t) has one member
+  /// Every C_j(t) has one member, by phase.
+  std::vector<bool> unique;
 };
 
 /// Nothing where choices tie on the orbit that lead to different backups, and nothing is known that decides between
