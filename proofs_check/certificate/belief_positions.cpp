@@ -157,16 +157,18 @@ std::vector<Rational> exact_values(const Game& game, const std::vector<double>& 
   return w;
 }
 
-/// Values with W <= TW, checked exactly: floating point, taken down until they are.
+/// Values with W <= TW, checked exactly: floating point, taken down by more and more until they are.
 std::optional<std::vector<Rational>> lower_bounds(const Game& game, const std::vector<double>& near) {
-  double size = 1e-300;
+  double size = 1;
   for (const double w : near) size = std::max(size, std::abs(w));
   const Rational grid(std::exp2(std::floor(std::log2(size)) - 40));
-  for (Rational down = grid; down <= Rational(size); down *= 16) {
+  for (Rational down(0); down <= Rational(size); down = down == 0 ? grid : Rational(16 * down)) {
     std::vector<Rational> w;
     for (const double x : near) {
       const Rational steps = (Rational(x) - down) / grid;
-      w.push_back(grid * Rational(Integer(numerator(steps) / denominator(steps))));
+      Integer whole = numerator(steps) / denominator(steps);
+      if (whole > steps) --whole;
+      w.push_back(grid * whole);
     }
     bool below = true;
     for (std::size_t i = 0; i < w.size() && below; ++i) below = w[i] <= backup_at(game, i, w);
