@@ -38,22 +38,20 @@ void add_row(FiniteMdpBuilder<Rational>& builder, State s, Action a, const std::
   for (const auto& next : row) builder.transition(s, a, next.target, next.probability / sum);
 }
 
-/// x to so many decimals.
-Rational rounded(double x, int digits) {
-  return decimal(std::stod(fmt::format("{:.{}f}", x, digits)));
+constexpr long grain = 4096;
+
+/// x to three decimals.
+double to_thousandths(double x) {
+  return std::stod(fmt::format("{:.3f}", x));
 }
 
-/// The row in multiples of 1/grain.
-std::vector<Successor<Rational>> in_grains(FiniteMdp<double>::Row row, long grain) {
+/// The row in whole grains, by entry.
+std::vector<long> in_grains(FiniteMdp<double>::Row row) {
   std::vector<long> grains;
   long left = grain;
   for (const auto& next : row) left -= grains.emplace_back(std::lround(next.probability * static_cast<double>(grain)));
   *std::max_element(grains.begin(), grains.end()) += left;
-  std::vector<Successor<Rational>> result;
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    if (grains[i] > 0) result.push_back({row[i].target, Rational(grains[i], grain)});
-  }
-  return result;
+  return grains;
 }
 
 }  // namespace
@@ -81,17 +79,21 @@ Model<Rational> rationalise(const Model<double>& model) {
   return with_mdp(std::move(builder).build(), model);
 }
 
-Model<Rational> coarsen(const Model<double>& model, long grain, int digits) {
+Model<double> coarsen(Model<double> model) {
   const FiniteMdp<double>& mdp = model.mdp;
-  const Rational largest = 1 - 1 / Rational(boost::multiprecision::pow(Integer(10), static_cast<unsigned>(digits)));
-  FiniteMdpBuilder<Rational> builder(mdp.states(), mdp.actions(), std::min(rounded(mdp.discount(), digits), largest));
+  FiniteMdpBuilder<double> builder(mdp.states(), mdp.actions(), std::min(to_thousandths(mdp.discount()), 0.999));
   for (State s = 0; s < mdp.states(); ++s) {
     for (Action a = 0; a < mdp.actions(); ++a) {
-      builder.reward(s, a, rounded(mdp.reward(s, a), digits));
-      add_row(builder, s, a, in_grains(mdp.successors(s, a), grain));
+      builder.reward(s, a, to_thousandths(mdp.reward(s, a)));
+      const auto row = mdp.successors(s, a);
+      const std::vector<long> grains = in_grains(row);
+      for (std::size_t i = 0; i < grains.size(); ++i) {
+        builder.transition(s, a, row[i].target, static_cast<double>(grains[i]) / static_cast<double>(grain));
+      }
     }
   }
-  return with_mdp(std::move(builder).build(), model);
+  model.mdp = std::move(builder).build();
+  return model;
 }
 
 }  // namespace maximin

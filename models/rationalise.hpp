@@ -12,9 +12,10 @@ Rational decimal(double x);
 /// they sum to 1 exactly.
 Model<Rational> rationalise(const Model<double>& model);
 
-/// A model of small fractions near this one, for exact arithmetic that repeats itself many times: probabilities are
-/// multiples of 1/grain (what is less than half of one is dropped, what is missing goes to the largest), rewards and
-/// the discount have at most `digits` decimals. Its constants are near those of the model and must be taken anew.
-Model<Rational> coarsen(const Model<double>& model, long grain, int digits);
+/// A model of short decimals near this one, for exact arithmetic that repeats itself many times: probabilities are
+/// multiples of 1/4096 (what is less than half of one is dropped, what is missing goes to the largest), rewards and the
+/// discount have at most 3 decimals. `rationalise` reads them as they are meant. The constants are near those of the
+/// model and must be taken anew.
+Model<double> coarsen(Model<double> model);
 
 }  // namespace maximin

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <maximin/models/make_perturbation.hpp>
+#include <maximin/models/rationalise.hpp>
+#include <maximin/proofs_check/certificate/exact_examination.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin {
@@ -47,7 +49,9 @@ DrawnModel draw_trial(const Campaign& campaign, const ModelSource& source, long 
 TrialRecord run_trial(const Campaign& campaign, const DrawnModel& drawn, long trial) {
   TrialRecord record{trial, drawn.family, {}};
   try {
-    record.found = examine(drawn.model.mdp, make_perturbation(drawn.model), campaign.examination);
+    record.found = campaign.examination.exact
+                       ? examine_exactly(rationalise(drawn.model), {}, campaign.examination)
+                       : examine(drawn.model.mdp, make_perturbation(drawn.model), campaign.examination);
   } catch (const BudgetExhausted&) {
     record.found = {};
     record.found.states = drawn.model.mdp.states();

@@ -30,6 +30,7 @@ struct ExaminationOptions {
   std::optional<std::set<ClaimId>> only = {};  ///< absent: all
   long max_period = 64;                        ///< the longest cycle of policy pairs that is looked for
   TieBreak tie = TieBreak::lowest_index;
+  bool exact = false;  ///< of a campaign: each model in exact arithmetic (certificate/exact_examination.hpp)
   const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: the examination ends with Interrupted
 
   bool wants(ClaimId id) const { return !only || only->contains(id); }

@@ -23,8 +23,9 @@ std::string ratio(double x) {
   return std::isfinite(x) ? fmt::format("{:.4f}", x) : "-";
 }
 
-std::string reading_text(Reading reading) {
-  return reading == Reading::paper ? "as the paper prints it: R_max = max(0, max R)" : "corrected: R_max = max |R|";
+std::string reading_text(const ExaminationOptions& options) {
+  return options.reading == Reading::paper ? "as the paper prints it: R_max = max(0, max R)"
+                                           : "corrected: R_max = max |R|";
 }
 
 std::string claim_row(const Claim& claim, const ClaimSummary& s) {
@@ -44,7 +45,7 @@ std::string periods(const CampaignSummary& s) {
   return text.empty() ? text : text + ")";
 }
 
-std::string conclusion(const CampaignSummary& s, std::string_view draw, bool complete) {
+std::string conclusion(const CampaignSummary& s, std::string_view draw, bool complete, bool exact) {
   const char* interrupted = complete ? "" : " The run was interrupted; --resume completes it.";
   switch (outcome(s, complete)) {
     case Outcome::violated: {
@@ -77,11 +78,13 @@ std::string conclusion(const CampaignSummary& s, std::string_view draw, bool com
     default:
       return fmt::format(
           "HOLDS: no violation in {}. At most {:.3f} percent of such models violate a claim (95 percent upper "
-          "limit).\n{}Seen in floating point, with certified numerical error; not a proof.\n",
+          "limit).\n{}{}\n",
           counted(s.trials, "model"), 100 * s.violation_upper_limit(),
           s.undetermined == 0
               ? ""
-              : fmt::format("Some claim is undetermined on {} of them: a budget ran out.\n", s.undetermined));
+              : fmt::format("Some claim is undetermined on {} of them: a budget ran out.\n", s.undetermined),
+          exact ? "Proved for each of them in exact arithmetic; of other models nothing is proved."
+                : "Seen in floating point, with certified numerical error; not a proof.");
   }
 }
 
@@ -143,8 +146,9 @@ Outcome outcome(const Examination& e) {
   return e.any(Verdict::undetermined) ? Outcome::undetermined : Outcome::holds;
 }
 
-std::string verdict_text(const CampaignSummary& s, Reading reading, std::string_view draw, bool complete) {
-  std::string text = fmt::format("{} ({}), reading {}\n\n", counted(s.trials, "model"), draw, reading_text(reading));
+std::string verdict_text(const CampaignSummary& s, const ExaminationOptions& options, std::string_view draw,
+                         bool complete) {
+  std::string text = fmt::format("{} ({}), reading {}\n\n", counted(s.trials, "model"), draw, reading_text(options));
   text += fmt::format("  {:<16} {:<32} {:>7} {:>8} {:>8} {:>11}  {:>8} {:>8} {:>8} {:>8}\n", "claim", "", "checked",
                       "violated", "undeter.", "informative", "median", "p99", "max", "at trial");
   for (const Claim& c : claims()) {
@@ -161,13 +165,14 @@ std::string verdict_text(const CampaignSummary& s, Reading reading, std::string_
       s.balls_of_several, s.attack_changes_action, s.pessimism_changes_action);
   text += fmt::format("At least one bound informative on {} ({})\n\n", s.any_informative,
                       percent(s.any_informative, s.trials));
-  return text + conclusion(s, draw, complete);
+  return text + conclusion(s, draw, complete, options.exact);
 }
 
-std::string verdict_text(std::string_view title, const Model<double>& model, const Examination& e, Reading reading) {
+std::string verdict_text(std::string_view title, const Model<double>& model, const Examination& e,
+                         const ExaminationOptions& options) {
   std::string text = fmt::format("{}: {}, {}, gamma {:g}, eps {:g}, largest ball {}\nreading {}\n\n", title,
                                  counted(e.states, "state"), counted(e.actions, "action"), e.discount, e.eps,
-                                 counted(e.largest_ball, "state"), reading_text(reading));
+                                 counted(e.largest_ball, "state"), reading_text(options));
   const auto& constants = e.constants;
   text += witness("l_r", constants.l_r, model) + witness("l_p", constants.l_p, model);
   text += witness("K", constants.k_tv, model);
@@ -194,7 +199,8 @@ std::string verdict_text(std::string_view title, const Model<double>& model, con
              "\nUNDETERMINED: a budget ran out before every claim was decided; see --max-iterations, "
              "--max-period, --max-positions.\n";
     default:
-      return text + fmt::format("\nHOLDS on this model, in floating point with certified error{}\n",
+      return text + fmt::format("\nHOLDS on this model, {}{}\n",
+                                options.exact ? "proved in exact arithmetic" : "in floating point with certified error",
                                 vacuous == bounds_checked ? "; but every bound is vacuous here." : ".");
   }
 }

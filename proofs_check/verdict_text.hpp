@@ -21,11 +21,13 @@ Outcome outcome(const Examination& examination);
 
 /// A campaign for a person to read: a table of claims, fates, regimes, and the verdict last. `draw` are the options of
 /// verify_bound that draw its models, e.g. "--seed 1 --family broad".
-std::string verdict_text(const CampaignSummary& summary, Reading reading, std::string_view draw, bool complete);
+std::string verdict_text(const CampaignSummary& summary, const ExaminationOptions& options, std::string_view draw,
+                         bool complete);
 
 /// One model for a person to read, called `title`: constants with the pairs of states that attain them, every claim
 /// with both sides and where it is tightest, states and actions by the model's names, and the verdict last.
-std::string verdict_text(std::string_view title, const Model<double>& model, const Examination& found, Reading reading);
+std::string verdict_text(std::string_view title, const Model<double>& model, const Examination& found,
+                         const ExaminationOptions& options);
 
 /// What the claims state, in their order, with their references and the symbols that they use.
 std::string claims_text();

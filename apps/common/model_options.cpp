@@ -145,6 +145,15 @@ GeometryOverrides<double> geometry_overrides(const ModelOptions& options) {
   return overrides;
 }
 
+GeometryOverrides<Rational> exact_overrides(const ModelOptions& options) {
+  const GeometryOverrides<double> asked = geometry_overrides(options);
+  GeometryOverrides<Rational> overrides;
+  if (asked.kind) overrides.kind = static_cast<Geometry<Rational>::Kind>(*asked.kind);
+  overrides.norm = asked.norm;
+  if (asked.eps) overrides.eps = decimal(*asked.eps);
+  return overrides;
+}
+
 Perturbation<double> make_perturbation(const Model<double>& model, const ModelOptions& options) {
   if (model.geometry.kind == Kind::none && options.metric.empty()) {
     remark(

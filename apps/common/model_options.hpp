@@ -44,6 +44,9 @@ std::string title(const std::string& name, const ModelOptions& options);
 /// What the command line says of the geometry.
 GeometryOverrides<double> geometry_overrides(const ModelOptions& options);
 
+/// The same in exact arithmetic, its numbers as the decimals that they are.
+GeometryOverrides<Rational> exact_overrides(const ModelOptions& options);
+
 /// The balls of the model, with the overrides of the command line. Prints a note on standard error where the metric is
 /// a default that nobody asked for. Throws InputError as `maximin::make_perturbation`.
 Perturbation<double> make_perturbation(const Model<double>& model, const ModelOptions& options);

@@ -16,6 +16,7 @@
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/progress.hpp>
 #include <maximin/models/make_perturbation.hpp>
+#include <maximin/models/rationalise.hpp>
 #include <maximin/proofs_check/campaign.hpp>
 #include <maximin/proofs_check/campaign_summary.hpp>
 #include <maximin/proofs_check/report/html_report.hpp>
@@ -33,8 +34,10 @@ using Json = nlohmann::ordered_json;
 ModelSource model_source(const Options& options) {
   const Family family = family_named(options.family);
   const FamilyOptions restrictions = family_options(options);
+  const bool coarse = is_exact(options);
   return [=](Stream& rng) {
     FamilyMember member = draw_family_member(family, restrictions, rng);
+    if (coarse) member.model = coarsen(std::move(member.model));
     return DrawnModel{std::string(family_name(member.family)), std::move(member.model)};
   };
 }
@@ -146,7 +149,7 @@ int run_campaign_command(const Options& options) {
   if (options.json) {
     apps::print(apps::json_text(summary_json(options, summary, complete)));
   } else {
-    apps::print(verdict_text(summary, examination_options(options).reading, replay_options(options), complete));
+    apps::print(verdict_text(summary, examination_options(options), replay_options(options), complete));
   }
   if (!options.report.empty()) {
     apps::write_file(options.report, html_report(configuration(options), records, summary, replay_options(options)),
@@ -174,7 +177,7 @@ int run_replay_command(const Options& options) {
     apps::print(apps::json_text(json));
   } else {
     const std::string title = fmt::format("trial {} of seed {} ({})", record.trial, options.seed, record.family);
-    apps::print(verdict_text(title, drawn.model, record.found, examination_options(options).reading));
+    apps::print(verdict_text(title, drawn.model, record.found, examination_options(options)));
   }
   return exit_code(outcome(record.found));
 }

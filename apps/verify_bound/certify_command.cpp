@@ -11,7 +11,6 @@
 #include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/table.hpp>
-#include <maximin/models/rationalise.hpp>
 #include <maximin/proofs_check/trial_record.hpp>
 
 #include "options.hpp"
@@ -84,15 +83,6 @@ nlohmann::ordered_json summary_json(const CertifyCommand& options, const Certifi
   return json;
 }
 
-GeometryOverrides<Rational> overrides_of(const apps::ModelOptions& options) {
-  const GeometryOverrides<double> asked = apps::geometry_overrides(options);
-  GeometryOverrides<Rational> overrides;
-  if (asked.kind) overrides.kind = static_cast<Geometry<Rational>::Kind>(*asked.kind);
-  overrides.norm = asked.norm;
-  if (asked.eps) overrides.eps = decimal(*asked.eps);
-  return overrides;
-}
-
 }  // namespace
 
 void declare(CLI::App& command, CertifyCommand& o) {
@@ -138,7 +128,7 @@ int run_certify_command(const CertifyCommand& options) {
     throw InputError(fmt::format("--output: {} exists, expected a new name or --force", options.output));
   }
   const Model<Rational> model = apps::load_exactly(options.model);
-  const Certificate certificate = certify(model, overrides_of(options.model), asked);
+  const Certificate certificate = certify(model, apps::exact_overrides(options.model), asked);
   apps::write_file(options.output, certificate_json(certificate), overwrite);
   const Outcome outcome = outcome_of(certificate);
   if (options.json) {

@@ -20,6 +20,7 @@ constexpr const char* examples = R"(Examples:
   verify_bound --seed 1 --replay 17                one trial of a campaign, in full
   verify_bound lake.json --metric hops --eps 1 --discount 0.95
   verify_bound --example one-sided --reading paper Theorem 1 as printed fails
+  verify_bound --exact --trials 200 --states 5:60  every verdict proved, in rational numbers
   verify_bound --explain                           what lemma-1 to F state, and the symbols
 
 Exit codes: 0 holds, 1 a claim is violated, 2 bad usage or input, 3 undetermined, 4 an assumption of a claim fails)";

@@ -5,6 +5,7 @@
 #include <maximin/apps/common/json_output.hpp>
 #include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
+#include <maximin/proofs_check/certificate/exact_examination.hpp>
 #include <maximin/proofs_check/report/html_report.hpp>
 #include <maximin/proofs_check/report/round_series.hpp>
 
@@ -16,7 +17,11 @@ int run_model_command(const Options& options) {
   const Model<double> model = apps::load(options.model);
   const Perturbation<double> perturbation = apps::make_perturbation(model, options.model);
   const std::string source = options.model.file.empty() ? options.model.example : options.model.file;
-  const TrialRecord record{0, source, examine(model.mdp, perturbation, examination_options(options))};
+  const ExaminationOptions asked = examination_options(options);
+  const TrialRecord record{
+      0, source,
+      asked.exact ? examine_exactly(apps::load_exactly(options.model), apps::exact_overrides(options.model), asked)
+                  : examine(model.mdp, perturbation, asked)};
   nlohmann::ordered_json how = configuration(options);
   how["model"] = source;
   if (!options.report.empty()) {
@@ -32,7 +37,7 @@ int run_model_command(const Options& options) {
     apps::print(apps::json_text(json));
   } else {
     const std::string title = apps::printable(apps::title(model.name, options.model));
-    apps::print(verdict_text(title, model, record.found, examination_options(options).reading));
+    apps::print(verdict_text(title, model, record.found, asked));
   }
   return exit_code(outcome(record.found));
 }

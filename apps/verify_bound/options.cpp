@@ -51,6 +51,17 @@ void declare_checks(CLI::App& program, Options& o) {
       ->delimiter(',')
       ->type_name("LIST")
       ->group(group);
+  program
+      .add_option("--arith", o.arith,
+                  "double, floating point with certified error (the default), or\nexact, rational numbers: what holds "
+                  "is proved")
+      ->check(apps::one_of({"double", "exact"}))
+      ->type_name("WORD")
+      ->group(group);
+  program
+      .add_flag_callback(
+          "--exact", [&o] { o.arith = "exact"; }, "short for --arith exact")
+      ->group(group);
   program.add_option("--tie", o.tie, "which index wins among equals: lowest (the default) or highest")
       ->check(apps::one_of({"lowest", "highest"}))
       ->type_name("WORD")
@@ -204,6 +215,7 @@ ExaminationOptions examination_options(const Options& o) {
   e.max_iterations = o.max_iterations;
   e.max_belief_positions = o.max_positions;
   e.max_period = o.max_period;
+  e.exact = is_exact(o);
   e.only = claims_named(o.claims);
   return e;
 }
@@ -225,6 +237,7 @@ FamilyOptions family_options(const Options& o) {
 nlohmann::ordered_json configuration(const Options& o) {
   const auto optional = [](const auto& x) { return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json(nullptr); };
   return {{"reading", o.reading},
+          {"arith", o.arith},
           {"claims", o.claims},
           {"tie", o.tie},
           {"max_iterations", o.max_iterations},
@@ -259,6 +272,7 @@ std::string replay_options(const Options& o) {
   if (o.successors) add("--successors", *o.successors);
   if (o.reading != "corrected") add("--reading", o.reading);
   if (o.tie != "lowest") add("--tie", o.tie);
+  if (is_exact(o)) text += " --exact";
   const Options unchanged;
   if (o.max_iterations != unchanged.max_iterations) add("--max-iterations", o.max_iterations);
   if (o.max_period != unchanged.max_period) add("--max-period", o.max_period);

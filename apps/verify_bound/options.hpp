@@ -22,6 +22,7 @@ struct Options {
   // What to check
   std::string reading = "corrected";
   std::vector<std::string> claims;
+  std::string arith = "double";
   std::string tie = "lowest";
   long max_iterations = 20'000;
   long max_period = 64;
@@ -49,6 +50,11 @@ struct Options {
   bool explain = false;
   bool quiet = false;
 };
+
+/// Whether rational numbers were asked for.
+inline bool is_exact(const Options& options) {
+  return options.arith == "exact";
+}
 
 /// Declares the options on the program.
 void declare(CLI::App& program, Options& options);

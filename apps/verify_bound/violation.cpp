@@ -10,7 +10,9 @@
 #include <maximin/apps/common/output_file.hpp>
 #include <maximin/models/files/maximin_json.hpp>
 #include <maximin/models/make_perturbation.hpp>
+#include <maximin/models/rationalise.hpp>
 #include <maximin/models/shrink.hpp>
+#include <maximin/proofs_check/certificate/exact_examination.hpp>
 #include <maximin/proofs_check/examination.hpp>
 
 namespace maximin::verify_bound {
@@ -48,7 +50,9 @@ void save_violation(const Options& options, Model<double> model, long trial, Cla
   only.only = {id};
   const auto still_violates = [&](const Model<double>& candidate) {
     try {
-      return examine(candidate.mdp, make_perturbation(candidate), only).check(id).verdict == Verdict::violated;
+      const Examination found = only.exact ? examine_exactly(rationalise(candidate), {}, only)
+                                           : examine(candidate.mdp, make_perturbation(candidate), only);
+      return found.check(id).verdict == Verdict::violated;
     } catch (const std::runtime_error&) {
       return false;  // a step of the shrinking left no valid model, or one that is too hard to decide
     }

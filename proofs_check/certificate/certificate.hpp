@@ -37,6 +37,7 @@ struct CertifiedLimit {
   std::vector<std::optional<Values<Rational>>> fixed;  ///< of the policy pair of the phase, where it is one
   /// By phase, whether `low` are the values of its policy against the optimal attacker: no choices tie, or k = 1.
   std::vector<bool> attained;
+  Rational gap;  ///< max over the phases of Q* less `low`: not written
 
   bool all_attained() const;
 };
@@ -75,6 +76,10 @@ struct Certificate {
   Values<Rational> test_time_robust;
   std::optional<CertifiedBeliefGame> belief_game;
   std::vector<CertifiedClaim> claims;
+
+  // Not written: what a campaign counts.
+  State largest_ball = 0;
+  bool pessimism_changes_action = false;  ///< maximin and greedy differ in some round, at some observation
 
   bool any(Verdict verdict) const;
 };

@@ -35,6 +35,7 @@ class Certifier {
     result_.model.geometry = geometry_.geometry;
     result_.reading = options.reading;
     result_.tie = options.tie;
+    result_.largest_ball = balls_.largest_ball();
     result_.constants = exact_constants(mdp_, geometry_);
     refuse_infinite_constants();
   }
@@ -123,7 +124,9 @@ class Certifier {
     std::vector<Integer> scratch;
     maximin_policy(q.numerators, balls_, policies.policy, scratch, MinAggregator{}, options_.tie);
     best_response_attack(q.numerators, policies.policy, balls_, policies.attack, options_.tie);
-    Policy composed;
+    Policy composed, best;
+    greedy_policy(q.numerators, best, options_.tie);
+    result_.pessimism_changes_action = result_.pessimism_changes_action || best != policies.policy;
     compose(policies.policy, policies.attack, composed);
     scaled_.backup(taken(q, composed), next);
     const PairFacts& pair = facts_of(n, std::move(policies), composed);
@@ -235,7 +238,7 @@ class Certifier {
   }
 
   void phase(std::size_t j) {
-    const CertifiedLimit& limit = *result_.limit;
+    CertifiedLimit& limit = *result_.limit;
     const long n = static_cast<long>(result_.rounds.size() + j);
     const ScaledTable low = backup(limit.low[j]);
     const bool attained = limit.attained[j];
@@ -253,6 +256,7 @@ class Certifier {
     Instance gap = largest_difference(optimal_, limit.fixed[j] ? backup(*limit.fixed[j]) : low, n, bound);
     gap.decisive = limit.fixed[j].has_value();
     at(ClaimId::theorem_1).observe(std::move(gap));
+    limit.gap = std::max(limit.gap, largest_difference(optimal_, low, n, 0).left);
     const auto loss = [&](ClaimId id, const Rational& right) {
       Instance instance = largest_difference(optimal_, low, n, right);
       instance.decisive = attained;

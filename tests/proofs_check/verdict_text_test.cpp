@@ -60,7 +60,7 @@ TEST(Outcome, OfOneModel) {
 TEST(VerdictText, ACampaignThatHolds) {
   std::vector<TrialRecord> records;
   for (long k = 0; k < 2000; ++k) records.push_back(of_e(k, 1, k == 40 ? 2 : 4, k < 500 ? 10 : 1));
-  const std::string text = verdict_text(summarise(records), Reading::corrected, "--seed 7", true);
+  const std::string text = verdict_text(summarise(records), {}, "--seed 7", true);
   EXPECT_TRUE(has_line(text, "2000 models (--seed 7), reading corrected: R_max = max |R|"));
   EXPECT_TRUE(has_line(text,
                        "  E                pessimism at test time              2000        0        0       25.0%"
@@ -74,8 +74,7 @@ TEST(VerdictText, ACampaignThatHolds) {
 }
 
 TEST(VerdictText, ACampaignOfVacuousBoundsSaysThatItVerifiesNothing) {
-  const std::string text =
-      verdict_text(summarise({of_e(0, 1, 2, 1), of_e(1, 1, 2, 2)}), Reading::corrected, "--seed 1", true);
+  const std::string text = verdict_text(summarise({of_e(0, 1, 2, 1), of_e(1, 1, 2, 2)}), {}, "--seed 1", true);
   EXPECT_TRUE(has(text, "UNDETERMINED: every bound was vacuous on every model"));
   EXPECT_TRUE(has(text, "this campaign verifies nothing"));
   EXPECT_FALSE(has(text, "HOLDS"));
@@ -83,7 +82,7 @@ TEST(VerdictText, ACampaignOfVacuousBoundsSaysThatItVerifiesNothing) {
 
 TEST(VerdictText, AViolatedCampaignNamesTheClaimAndTheTrialToReplay) {
   const auto summary = summarise({of_e(0, 1, 2, 10), of_e(1, 3, 2, 10)});
-  const std::string text = verdict_text(summary, Reading::paper, "--seed 9 --family costs", true);
+  const std::string text = verdict_text(summary, {.reading = Reading::paper}, "--seed 9 --family costs", true);
   EXPECT_TRUE(
       has_line(text, "2 models (--seed 9 --family costs), reading as the paper prints it: R_max = max(0, max R)"));
   EXPECT_TRUE(has(text, "VIOLATED"));
@@ -98,20 +97,19 @@ TEST(VerdictText, ACampaignThatNeverDecidedAClaimIsUndetermined) {
   const auto summary = summarise(records);
   EXPECT_TRUE(summary.some_claim_never_decided());
   EXPECT_EQ(outcome(summary, true), Outcome::undetermined);
-  EXPECT_TRUE(
-      has(verdict_text(summary, Reading::corrected, "--seed 1", true), "UNDETERMINED: no violation in 2 models"));
+  EXPECT_TRUE(has(verdict_text(summary, {}, "--seed 1", true), "UNDETERMINED: no violation in 2 models"));
   EXPECT_FALSE(summarise({of_e(0, 1, 2, 10)}).some_claim_never_decided());
 }
 
 TEST(VerdictText, AnInterruptedCampaignSaysHowToGoOn) {
-  const std::string text = verdict_text(summarise({of_e(0, 1, 2, 10)}), Reading::corrected, "--seed 1", false);
+  const std::string text = verdict_text(summarise({of_e(0, 1, 2, 10)}), {}, "--seed 1", false);
   EXPECT_TRUE(has(text, "UNDETERMINED: 1 model and no violation. The run was interrupted; --resume completes it."));
 }
 
 TEST(VerdictText, OneModelWithItsWitnesses) {
   const Model<double> model = unnamed(one_sided<double>());
   const Examination found = examine(model.mdp, one_sided_balls<double>(), {.reading = Reading::paper});
-  const std::string text = verdict_text("the one-sided model", model, found, Reading::paper);
+  const std::string text = verdict_text("the one-sided model", model, found, {.reading = Reading::paper});
   EXPECT_TRUE(has_line(text, "the one-sided model: 3 states, 2 actions, gamma 0.5, eps 1, largest ball 2 states"));
   EXPECT_TRUE(has_line(text, "  l_r            1   attained by states 0 and 1, action 0"));
   EXPECT_TRUE(has_line(text, "  l_p            1   attained by states 0 and 1, action 0, successor 0"));
@@ -125,14 +123,14 @@ TEST(VerdictText, OneModelByItsNames) {
   model.state_names = {"near", "far", "out"};
   model.action_names = {"stay", "leave"};
   const Examination found = examine(model.mdp, one_sided_balls<double>(), {.reading = Reading::paper});
-  const std::string text = verdict_text("named", model, found, Reading::paper);
+  const std::string text = verdict_text("named", model, found, {.reading = Reading::paper});
   EXPECT_TRUE(has_line(text, "  l_p            1   attained by states near and far, action stay, successor near"));
   EXPECT_TRUE(has(text, "1.6667 informative  at n = 40, state near, action stay\n"));
 }
 
 TEST(VerdictText, OneModelThatHolds) {
   const Model<double> model = unnamed(trap());
-  const std::string text = verdict_text("the trap", model, examine(model.mdp, trap_balls()), Reading::corrected);
+  const std::string text = verdict_text("the trap", model, examine(model.mdp, trap_balls()), {});
   EXPECT_TRUE(has_line(text, "  l_p            0"));
   EXPECT_TRUE(has(text, "  E                pessimism at test time           holds             0.625 <= 0.666667"));
   EXPECT_TRUE(has(text, "HOLDS on this model, in floating point with certified error."));
@@ -143,7 +141,7 @@ TEST(VerdictText, OneModelThatFailsAnAssumption) {
   b.transition(0, 0, 0, 1).transition(1, 0, 1, 1).reward(1, 0, 1);
   const Model<double> model = unnamed(std::move(b).build());
   const Examination found = examine(model.mdp, on_line<double>({1, 1}, 1));
-  const std::string text = verdict_text("twins", model, found, Reading::corrected);
+  const std::string text = verdict_text("twins", model, found, {});
   EXPECT_TRUE(has_line(text, "  l_r            infinite: states 0 and 1 at distance 0 differ"));
   EXPECT_TRUE(
       has_line(text,

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <maximin/models/make_perturbation.hpp>
+#include <maximin/models/model.hpp>
+#include <maximin/proofs_check/certificate/certificate.hpp>
+#include <maximin/proofs_check/examination.hpp>
+
+namespace maximin {
+
+/// What a certificate proves, in the form that campaigns, trials files and reports take: verdicts are exact and have no
+/// slack, sides are shown in floating point.
+Examination examination_of(const Certificate& certificate);
+
+/// The examination in exact arithmetic. Where Assumption 1 fails, or a model is too large for exact solves, the
+/// verdicts say so. Throws InputError as `certify`, and Interrupted.
+Examination examine_exactly(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
+                            const ExaminationOptions& options);
+
+}  // namespace maximin
