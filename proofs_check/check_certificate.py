@@ -412,55 +412,83 @@ def brief_list(numbers):
 class Limit:
     """Conditions 1 to 4, and the values that follow."""
 
-    def __init__(self, node, model, last):
-        period, radius, orbit, low, fixed = node.members("period", "radius", "orbit", "low", "fixed")
-        self.k, self.r = len(orbit.array()), radius.number()
+    def __init__(self, node, model, last, tie):
+        period, radius, classes, orbit, low, fixed = node.members("period", "radius", "classes", "orbit", "low", "fixed")
+        phases = orbit.array()
+        self.k, self.r, self.tie = len(phases), radius.number(), tie
         period.require(type(period.value) is int and period.value == self.k > 0, f"{period.shown()}, expected {self.k}, as of orbit")
         radius.require(self.r > 0, f"{brief(self.r)}, expected more than 0")
-        phases = orbit.array()
+        self.classes = [row.indices(model.n * model.m, model.m) for row in classes.array(model.n)]
+        flat = [c for row in self.classes for c in row]
+        in_order = all(c <= max(flat[:i], default=-1) + 1 for i, c in enumerate(flat))
+        classes.require(in_order, "numbers are skipped, expected classes in the order in which they first occur")
         U = [phase.values(model.n) for phase in phases]
         self.Q = [model.back(U[j - 1]) for j in range(self.k)]
-        self.low, self.fixed, self.single = [], [], []
-        for j, (low_node, fixed_node) in enumerate(zip(low.array(self.k), fixed.array(self.k))):
-            C = self.candidates(model, self.Q[j], phases[j])
-            played = self.check_phase(model, self.Q[j], U[j], C, phases[j])
+        self.low, self.fixed, self.attained = [], [], []
+        for low_node, fixed_node, phase, Q, values in zip(low.array(self.k), fixed.array(self.k), phases, self.Q, U):
+            C = [self.candidates(Q, ball) for ball in model.ball]
+            played = self.check_phase(model, Q, values, C, phase)
+            settled = [all(len(C[t]) == 1 for t in ball) for ball in model.ball]
+            self.check_classes(classes, model, last, played, settled)
             V = low_node.values(model.n)
             check_same(low_node, V, model.worst(model.back(V), C), "min_{t in B(s)} min_{a in C_j(t)} back(V)(s,a)")
             self.low.append(V)
-            self.single.append(self.k == 1 or all(len(c) == 1 for c in C))
-            unique = all(len(actions) == 1 for actions in played)
-            if not unique and self.k > 1:
+            self.attained.append(self.k == 1 or all(len(c) == 1 for c in C))
+            action = [self.action(s, ball, C, played[s], settled[s]) for s, ball in enumerate(model.ball)]
+            if None in action and self.k > 1:
                 fixed_node.require(fixed_node.value is None, f"{fixed_node.shown()}, expected null: an action is not unique")
                 self.fixed.append(None)
                 continue
             V = fixed_node.values(model.n)
-            expected = choose(model.back(V), [min(actions) for actions in played]) if unique else U[0]
-            check_same(fixed_node, V, expected, "back(V)(s, a_j(s))" if unique else "U_0")
+            check_same(fixed_node, V, values if None in action else choose(model.back(V), action), "that of (pi_n, om_n)")
             self.fixed.append(V)
-        distance = largest(absolute(difference(last, self.Q[0])))
-        radius.require(distance <= self.r, f"{brief(self.r)}, Q_N is {brief(distance)} from Q^0, expected at most r (condition 4)")
+        self.delta = largest(absolute(difference(last, self.Q[0])))
+        radius.require(self.delta <= self.r, f"{brief(self.r)}, Q_N is {brief(self.delta)} from Q^0, expected at most r (condition 3)")
 
-    def candidates(self, model, Q, node):
-        """C_j(t) for every t; condition 1."""
-        result = []
-        for t, ball in enumerate(model.ball):
-            v = [min([Q.rows[m][a] for m in ball]) for a in range(model.m)]
-            least = (max(v) * self.r.denominator - 2 * self.r.numerator * Q.over)
-            result.append([a for a, x in enumerate(v) if x * self.r.denominator >= least])
-            node.require(len({v[a] for a in result[t]}) == 1, f"candidates of state {t} differ, expected equals (condition 1)")
-        return result
+    def within(self, x, over):
+        """x / over <= 2r"""
+        return x * self.r.denominator <= 2 * self.r.numerator * over
+
+    def candidates(self, Q, ball):
+        """C_j(t), where B(t) is the ball."""
+        v = [min([Q.rows[m][a] for m in ball]) for a in range(len(Q.rows[0]))]
+        good = [a for a, x in enumerate(v) if self.within(max(v) - x, Q.over)]
+        if self.tie == "highest":
+            good.reverse()
+        M = {a: {self.classes[m][a] for m in ball if self.within(Q.rows[m][a] - v[a], Q.over)} for a in good}
+        return [b for i, b in enumerate(good) if not any(M[a] <= M[b] for a in good[:i])]
 
     def check_phase(self, model, Q, U, C, node):
-        """Conditions 2 and 3. Returns for every s the set of actions that round n of this phase may play there."""
-        check_same(node, U, model.worst(Q, C), "min_{t in B(s)} min_{a in C_j(t)} Q^j(s,a) (condition 2)")
+        """Conditions 1 and 2. Returns A_j(s) for every s."""
+        check_same(node, U, model.worst(Q, C), "min_{t in B(s)} min_{a in C_j(t)} Q^j(s,a) (condition 1)")
         best = Table([[min([max([row[a] for a in C[t]]) for t in ball])] for ball, row in zip(model.ball, Q.rows)], Q.over)
-        check_same(node, U, best, "min_{t in B(s)} max_{a in C_j(t)} Q^j(s,a) (condition 2)")
+        check_same(node, U, best, "min_{t in B(s)} max_{a in C_j(t)} Q^j(s,a) (condition 1)")
         played = []
         for s, (ball, row, [u]) in enumerate(zip(model.ball, Q.rows, best.rows)):  # best is U, over the denominator of Q
-            near = {a for t in ball for a in C[t] if (row[a] - u) * self.r.denominator <= 2 * self.r.numerator * Q.over}
+            near = {a for t in ball for a in C[t] if self.within(row[a] - u, Q.over)}
             played.append({a for a in near if row[a] == u})
-            node.require(near == played[s], f"[{s}]: an action is within 2r above, expected none (condition 3)")
+            node.require(near == played[s], f"[{s}]: an action is within 2r above, expected none (condition 2)")
         return played
+
+    def check_classes(self, node, model, last, played, settled):
+        """Condition 4 in a phase: what one class has in common."""
+        group = [frozenset(self.classes[s][a] for a in actions) if fixed else s for s, (actions, fixed) in enumerate(zip(played, settled))]
+        common_to = {}
+        for s, row in enumerate(self.classes):
+            for a, c in enumerate(row):
+                moves, (p_row, p_over) = {}, model.P[s][a]
+                for t, p in p_row.items():
+                    moves[group[t]] = moves.get(group[t], 0) + p * (model.P_over // p_over)
+                entry = (last.rows[s][a], model.R.rows[s][a], moves)
+                node.require(common_to.setdefault(c, entry) == entry, f"[{s}][{a}] is {c}, expected another class (condition 4)")
+
+    def action(self, s, ball, C, played, settled):
+        """a_j(s), or None."""
+        if len(played) == 1:
+            return min(played)
+        if not settled or len({self.classes[s][a] for a in played}) > 1:
+            return None
+        return next(C[t][0] for t in (ball if self.tie == "lowest" else ball[::-1]) if C[t][0] in played)
 
 
 # ---- Pessimism at test time, and beliefs -------------------------------------------------------------------------------
@@ -552,20 +580,20 @@ class Instances:
             phases = range(limit.k)
             low = [model.back(V) for V in limit.low]
             fixed = [V and model.back(V) for V in limit.fixed]
-            if all(fixed) and all(limit.single):
+            if all(fixed) and all(limit.attained):
                 tables = [(m, X) for both in backs for m, X in zip(rounds.first, both)]
                 tables += [(self.N + j, X) for both in (low, fixed) for j, X in enumerate(both)]
                 self.of["lemma-1"] = [self.lipschitz(m, X, L_print, 0, True) for m, X in tables]
             self.of["lemma-1-iterates"] = [self.lipschitz(m, X, L_rep, 0, True) for m, X in enumerate(rounds.tables[:-1])]
-            self.of["lemma-1-iterates"] += [self.lipschitz(self.N + j, limit.Q[j], L_rep, 2 * limit.r, False) for j in phases]
+            self.of["lemma-1-iterates"] += [self.lipschitz(self.N + j, limit.Q[j], L_rep, 2 * limit.delta, limit.delta == 0) for j in phases]
             self.of["lemma-2"] = self.lemma_2(D_print)
             factor, sharp = (1 + g) / (1 - g)**2, 1 / (1 - g)**2
             self.of["theorem-1"] = [self.gap(self.N + j, fixed[j] or low[j], factor * D_print, bool(fixed[j])) for j in phases]
-            self.of["A"] = [self.gap(self.N + j, low[j], factor * D_sound, limit.single[j]) for j in phases]
-            self.of["B"] = [self.gap(self.N + j, low[j], sharp * D_sound, limit.single[j]) for j in phases]
+            self.of["A"] = [self.gap(self.N + j, low[j], factor * D_sound, limit.attained[j]) for j in phases]
+            self.of["B"] = [self.gap(self.N + j, low[j], sharp * D_sound, limit.attained[j]) for j in phases]
             for name, D in (("C", D_rep), ("D", D_tv)):
                 self.of[name] = [self.gap(m, backs[1][i], F(m, D), True) for m, i in enumerate(rounds.index)]
-                self.of[name] += [self.gap(self.N + j, low[j], min(F(self.N + j, D), F(None, D)), limit.single[j])
+                self.of[name] += [self.gap(self.N + j, low[j], min(F(self.N + j, D), F(None, D)), limit.attained[j])
                                   for j in phases]
 
     def lipschitz(self, n, X, L, extra, proves):
@@ -587,9 +615,9 @@ class Instances:
                       [((s,), row, right.numerator) for s, row in enumerate(lefts.rows)])
 
     def lemma_2(self, right):
-        limit, added = self.limit, 2 * self.model.g * self.limit.r
+        limit, added = self.limit, 2 * self.model.g * self.limit.delta
         steps = [(n, Q, self.rounds.tables[n + 1], Fraction(0), True) for n, Q in enumerate(self.rounds.tables[:-1])]
-        steps += [(self.N + j, Q, limit.Q[(j + 1) % limit.k], added, False) for j, Q in enumerate(limit.Q)]
+        steps += [(self.N + j, Q, limit.Q[(j + 1) % limit.k], added, limit.delta == 0) for j, Q in enumerate(limit.Q)]
         for n, Q, following, extra, proves in steps:
             lefts = absolute(difference(self.model.back(best_values(Q)), following))
             scale, more = extra.denominator, extra.numerator * lefts.over
@@ -672,7 +700,7 @@ def check_certificate(root):
     check_same(optimal, Vstar, best_values(Qstar), "max_a back(V)(s,a)")
     known = check_constants(constants, model, reading, Qstar)
     run = Rounds(pairs, rounds, model, tie)
-    the_limit = None if limit.value is None else Limit(limit, model, run.tables[-1])
+    the_limit = None if limit.value is None else Limit(limit, model, run.tables[-1], tie)
     test_value = check_test_time(test_time, model, Qstar, tie)
     the_game = None if game.value is None else BeliefGame(game, model, Qstar, tie)
     instances = Instances(model, known, Vstar, Qstar, run, the_limit, test_value, the_game)
