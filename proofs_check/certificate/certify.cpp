@@ -82,8 +82,11 @@ class Certifier {
     };
     const auto delta = [&](const Rational& l) { return bounds::delta(geometry_.eps, gamma_, l); };
     const Rational repaired = bounds::lipschitz_of_q(gamma_, c.l_r.value, c.l_p.value, mdp_.states(), c.r_max);
-    lemma_1_.emplace(geometry_, printed(read));
-    lemma_1_iterates_.emplace(geometry_, repaired);
+    const LipschitzReach reach = lipschitz_reach(mdp_, geometry_, c);
+    const Rational horizon = Rational(mdp_.states()) / (1 - gamma_);
+    lemma_1_.emplace(mdp_, geometry_, reach.rewards + reach.probabilities * Rational(horizon * read));
+    lemma_1_iterates_.emplace(mdp_, geometry_,
+                              reach.rewards + reach.probabilities * Rational(horizon * gamma_ * c.r_max));
     delta_printed_ = delta(printed(read));
     delta_sound_ = delta(printed(c.r_max));
     delta_repaired_ = delta(repaired);
@@ -107,7 +110,10 @@ class Certifier {
       poll();
       round(n, q, next);
       std::swap(q, next);
-      if (orbit_is_entered(q)) return;
+      if (orbit_is_entered(q)) {
+        last_ = std::move(q);
+        return;
+      }
       if (static_cast<long>(msb(q.denominator)) > options_.max_bits) return;
     }
   }
@@ -223,6 +229,8 @@ class Certifier {
       return;
     }
     result_.limit = certify_limit(mdp_, balls_, *orbit_, std::move(*phases_), options_.tie);
+    at(ClaimId::lemma_1_iterates)
+        .observe(lemma_1_iterates_->tightest(last_, 0, static_cast<long>(result_.rounds.size())));
     for (std::size_t j = 0; j < orbit_->tables.size(); ++j) phase(j);
   }
 
@@ -233,9 +241,7 @@ class Certifier {
     const bool attained = limit.attained[j];
     const ScaledTable& q = orbit_->tables[j];
 
-    Instance iterates = lemma_1_iterates_->tightest(q, 2 * off_, n);
-    iterates.decisive = off_ == 0;
-    at(ClaimId::lemma_1_iterates).observe(std::move(iterates));
+    at(ClaimId::lemma_1_iterates).observe(lemma_1_iterates_->tightest(q, 2 * gamma_ * off_, n));
     lemma_2(n, q, orbit_->tables[(j + 1) % orbit_->tables.size()], 2 * gamma_ * off_, off_ == 0);
     if (limit.fixed[j] && attained) {
       at(ClaimId::lemma_1).observe(lemma_1_->tightest(backup(*limit.fixed[j]), 0, n));
@@ -334,6 +340,7 @@ class Certifier {
   std::map<std::vector<Policy>, Orbit> orbits_;
   const Orbit* orbit_ = nullptr;
   std::optional<SettledPhases> phases_;
+  ScaledTable last_;       // Q_N
   Rational off_;           // how far Q_N is from the orbit
   long next_attempt_ = 0;  // the first round in which settling is tried again
 };

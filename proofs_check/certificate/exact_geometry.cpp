@@ -104,6 +104,23 @@ ModelConstants<Rational> exact_constants(const FiniteMdp<Rational>& mdp, const E
   return c;
 }
 
+LipschitzReach lipschitz_reach(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,
+                               const ModelConstants<Rational>& constants) {
+  LipschitzReach reach{geometry.lower * constants.l_r.value, geometry.lower * constants.l_p.value};
+  if (geometry.exact) return reach;
+  for (State s = 0; s < mdp.states(); ++s) {
+    for (State t = s + 1; t < mdp.states(); ++t) {
+      for (Action a = 0; a < mdp.actions(); ++a) {
+        Rational& r = reach.rewards(s, t);
+        r = std::max(r, Rational(abs(Rational(mdp.reward(s, a) - mdp.reward(t, a)))));
+        Rational& p = reach.probabilities(s, t);
+        p = std::max(p, internal::row_difference<Rational>(mdp.successors(s, a), mdp.successors(t, a)).largest);
+      }
+    }
+  }
+  return reach;
+}
+
 LipschitzConstant<Rational> exact_lipschitz_constant(const QTable<Rational>& q, const ExactGeometry& geometry) {
   LipschitzConstant<Rational> c;
   for (State s = 0; s < q.rows(); ++s) {

@@ -26,6 +26,14 @@ ExactGeometry exact_geometry(const Model<Rational>& model, const GeometryOverrid
 /// The constants of the model, by upper distances: never too large. Pairs at infinite distance do not count.
 ModelConstants<Rational> exact_constants(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry);
 
+/// l_r d(s,t) and l_p d(s,t) for every pair of states, or a little less: the constant times the lower distance, or what
+/// the pair itself differs by if that is more. |S| x |S|, used for s < t.
+struct LipschitzReach {
+  QTable<Rational> rewards, probabilities;
+};
+LipschitzReach lipschitz_reach(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,
+                               const ModelConstants<Rational>& constants);
+
 /// The Lipschitz constant of a table, by upper distances.
 LipschitzConstant<Rational> exact_lipschitz_constant(const QTable<Rational>& q, const ExactGeometry& geometry);
 

@@ -33,42 +33,66 @@ Instance largest_difference(const ScaledTable& x, const ScaledTable& y, long n, 
   return {Rational(*largest, x.denominator * y.denominator), right, n, {at_state}, at_action};
 }
 
-LipschitzCheck::LipschitzCheck(const ExactGeometry& geometry, const Rational& l) {
-  const auto n = static_cast<State>(geometry.lower.rows());
-  std::vector<Rational> rights;
-  for (State s = 0; s < n; ++s) {
-    for (State t = s + 1; t < n; ++t) {
+namespace {
+
+Integer over(const Rational& x, const Integer& common) {
+  return numerator(x) * (common / denominator(x));
+}
+
+}  // namespace
+
+LipschitzCheck::LipschitzCheck(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,
+                               const QTable<Rational>& right) {
+  std::vector<std::vector<Rational>> spreads;
+  for (State s = 0; s < mdp.states(); ++s) {
+    for (State t = s + 1; t < mdp.states(); ++t) {
       if (!geometry.finite(s, t)) continue;
-      pairs_.push_back({s, t, 0});
-      rights.push_back(l * geometry.lower(s, t));
-      denominator_ = lcm(denominator_, denominator(rights.back()));
+      pairs_.push_back({s, t, 0, {}});
+      right_denominator_ = lcm(right_denominator_, denominator(right(s, t)));
+      auto& of_pair = spreads.emplace_back();
+      for (Action a = 0; a < mdp.actions(); ++a) {
+        of_pair.push_back(
+            internal::row_difference<Rational>(mdp.successors(s, a), mdp.successors(t, a)).total_variation);
+        spread_denominator_ = lcm(spread_denominator_, denominator(of_pair.back()));
+      }
     }
   }
-  for (std::size_t i = 0; i < rights.size(); ++i) {
-    pairs_[i].right = numerator(rights[i]) * (denominator_ / denominator(rights[i]));
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    pairs_[i].right = over(right(pairs_[i].s, pairs_[i].t), right_denominator_);
+    for (const Rational& x : spreads[i]) pairs_[i].spreads.push_back(over(x, spread_denominator_));
   }
 }
 
-Instance LipschitzCheck::tightest(const ScaledTable& q, const Rational& extra, long n) const {
+Instance LipschitzCheck::tightest(const ScaledTable& q, const Rational& c, long n) const {
+  // right/R - difference/D - c_n spread/(c_d S), all over R D c_d S.
+  const Integer both = spread_denominator_ * denominator(c);
+  const Integer right_weight = q.denominator * both, difference_weight = right_denominator_ * both;
+  const Integer spread_weight = numerator(c) * right_denominator_ * q.denominator;
   std::optional<Integer> least;
   const Pair* at = nullptr;
   Action at_action = 0;
-  Integer at_difference;
   for (const Pair& pair : pairs_) {
-    const Integer right = pair.right * q.denominator;
+    const Integer right = pair.right * right_weight;
     for (Action a = 0; a < q.numerators.cols(); ++a) {
-      Integer difference = abs(Integer(q.numerators(pair.s, a) - q.numerators(pair.t, a)));
-      Integer slack = right - difference * denominator_;
+      const Integer difference = abs(Integer(q.numerators(pair.s, a) - q.numerators(pair.t, a)));
+      Integer slack = right - difference * difference_weight;
+      if (spread_weight != 0) slack -= pair.spreads[static_cast<std::size_t>(a)] * spread_weight;
       if (least && !(slack < *least)) continue;
       least = std::move(slack);
       at = &pair;
       at_action = a;
-      at_difference = std::move(difference);
     }
   }
   if (at == nullptr) return {Rational(0), Rational(0)};
-  return {
-      Rational(at_difference, q.denominator) + extra, Rational(at->right, denominator_), n, {at->s, at->t}, at_action};
+  const Rational added = c * Rational(at->spreads[static_cast<std::size_t>(at_action)], spread_denominator_);
+  const Integer difference = abs(Integer(q.numerators(at->s, at_action) - q.numerators(at->t, at_action)));
+  Instance instance{Rational(difference, q.denominator) + added,
+                    Rational(at->right, right_denominator_),
+                    n,
+                    {at->s, at->t},
+                    at_action};
+  instance.decisive = added == 0;
+  return instance;
 }
 
 }  // namespace maximin

@@ -47,22 +47,25 @@ class Tightest {
 /// Where x - y is largest, as the left side of an instance at n.
 Instance largest_difference(const ScaledTable& x, const ScaledTable& y, long n, const Rational& right);
 
-/// The Lipschitz property |q(s,a) - q(t,a)| + extra <= L d(s,t), for one L: finds its tightest instance in table after
-/// table.
+/// The Lipschitz property of a table, |q(s,a) - q(t,a)| + c TV(s,t,a) <= right(s,t), TV the total variation between the
+/// rows of s and t: finds its tightest instance in table after table.
 class LipschitzCheck {
  public:
-  LipschitzCheck(const ExactGeometry& geometry, const Rational& l);
+  /// `right`: the right side for each pair at finite distance, |S| x |S|.
+  LipschitzCheck(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry, const QTable<Rational>& right);
 
-  /// The tightest instance; 0 <= 0 at no place where no two states are at finite distance.
-  Instance tightest(const ScaledTable& q, const Rational& extra, long n) const;
+  /// The tightest instance; 0 <= 0 at no place where no two states are at finite distance. `decisive` only where
+  /// nothing is added.
+  Instance tightest(const ScaledTable& q, const Rational& c, long n) const;
 
  private:
   struct Pair {
     State s, t;
-    Integer right;  ///< L d(s,t) over denominator_
+    Integer right;                 ///< over right_denominator_
+    std::vector<Integer> spreads;  ///< TV(s,t,a) by action, over spread_denominator_
   };
   std::vector<Pair> pairs_;
-  Integer denominator_{1};
+  Integer right_denominator_{1}, spread_denominator_{1};
 };
 
 }  // namespace maximin
