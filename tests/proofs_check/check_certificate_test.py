@@ -30,8 +30,8 @@ EXPECTED = {
     "one_sided_corrected": "hhhhhhhhhhh", "one_sided_paper": "vhvhvhhhhhh", "cycle": "hhhhhhhhhhh", "cycle_ties": "hhhhhhhhhhh",
     "cycle_ties_highest": "hhhhhhhhhhh", "cycle_ties_apart": "uhhhhhhhhhh", "chain_l1": "hhhhhhhhhhh", "plane_l2": "hhhhhhhhhhh", "islands": "hhhhhhhhhhh",
     "eps_zero": "hhuhhhhhhhh", "one_state": "hhuhhhhhhhh", "tied_lowest": "hhhhhhhhhhh", "tied_highest": "hhhhhhhhhhh",
-    "negative": "hhhhhhhhhhh", "negative_paper": "vhhhhhhhhhh", "mirror": "hhhhhhhhhhh", "twins": "huhhhhhhhhh",
-    "twins_tie": "huhhhhhhhhh", "discount_zero": "hhhhhhhhhhh", "undecided": "uuuhuuuuuhu", "lower_bound": "hhhhhhhhhhh",
+    "negative": "hhhhhhhhhhh", "negative_paper": "vhhhhhhhhhh", "mirror": "hhhhhhhhhhh", "twins": "hhhhhhhhhhh",
+    "twins_tie": "hhhhhhhhhhh", "discount_zero": "hhhhhhhhhhh", "undecided": "uuuhuuuuuhu", "lower_bound": "hhhhhhhhhhh",
     "random_six": "hhhhhhhhhhh"}
 
 CLAIMS = ["lemma-1", "lemma-1-iterates", "lemma-2", "lemma-3", "theorem-1", "A", "B", "C", "D", "E", "F"]

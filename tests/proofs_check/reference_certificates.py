@@ -380,9 +380,18 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
     test_value = robust_value(model, test_policy)
 
     # An instance is (at, left, right, whether it can prove a violation).
-    def lipschitz(X, n, L, extra, counts):
-        return [({"n": n, "states": [s, t], "action": a}, abs(X[s][a] - X[t][a]) + extra, L * model.low[s][t], counts)
-                for s, t in model.pairs_of_states() for a in A]
+    def jumps(s, t, a):
+        return [abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)) for u in S]
+
+    def lipschitz(X, n, factor, slack):
+        found = []
+        for s, t in model.pairs_of_states():
+            r = max([l_r * model.low[s][t]] + [abs(model.R[s][a] - model.R[t][a]) for a in A])
+            p = max([l_p * model.low[s][t]] + [jump for a in A for jump in jumps(s, t, a)])
+            for a in A:
+                added = slack * sum(jumps(s, t, a)) / 2
+                found.append(({"n": n, "states": [s, t], "action": a}, abs(X[s][a] - X[t][a]) + added, r + factor * p, added == 0))
+        return found
 
     def gap(X, n, right, counts):
         return [({"n": n, "states": [s], "action": a}, Qstar[s][a] - X[s][a], right, counts) for s in S for a in A]
@@ -410,11 +419,12 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
         if all(ours) and all(real):
             X = [(back, first_round[i]) for i in range(len(pairs)) for back in (model.back(fixed[i]), model.back(robust[i]))]
             X += [(back, N + j) for j in phases for back in (low[j], ours[j])]
-            instances["lemma-1"] = sum((lipschitz(back, n, L_print, 0, True) for back, n in X), []) or nothing
-        instances["lemma-1-iterates"] = (sum((lipschitz(tables[n], n, L_rep, 0, True) for n in range(N)), [])
-                                         + sum((lipschitz(limit.Q[j], N + j, L_rep, 2 * delta, delta == 0) for j in phases), [])) or nothing
+            instances["lemma-1"] = sum((lipschitz(back, n, model.n * r_paper / (1 - g), 0) for back, n in X), []) or nothing
+        factor = g * model.n * size / (1 - g)
+        iterates = [(tables[n], n, 0) for n in range(N + 1)] + [(limit.Q[j], N + j, 2 * g * delta) for j in phases]
+        instances["lemma-1-iterates"] = sum((lipschitz(X, n, factor, slack) for X, n, slack in iterates), []) or nothing
         loss = [(tstar(tables[n]), tables[n + 1], n, Fraction(0), True) for n in range(N)]
-        loss += [(tstar(limit.Q[j]), limit.Q[(j + 1) % k], N + j, 2 * g * delta, delta == 0) for j in phases]
+        loss += [(tstar(limit.Q[j]), limit.Q[(j + 1) % k], N + j, 2 * g * delta, g * delta == 0) for j in phases]
         instances["lemma-2"] = [({"n": n, "states": [s], "action": a}, abs(X[s][a] - Y[s][a]) + extra, D_print, counts)
                                 for X, Y, n, extra, counts in loss for s in S for a in A]
     instances["lemma-3"] = []
