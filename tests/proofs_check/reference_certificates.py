@@ -140,35 +140,89 @@ def orbit_values(model, actions):
 
 
 class Limit:
-    """The limit as the page defines it, made from the candidate orbit; `valid(Q_N)` asks conditions 1 to 4."""
+    """The limit as the page defines it, made from a candidate orbit and Q_N; `valid()` asks conditions 1 to 4.
 
-    def __init__(self, model, orbit, radius=None):
+    Classes that are not given are the coarsest that are found by splitting those of equal Q_N and rewards.
+    """
+
+    def __init__(self, model, orbit, table, tie, radius=None, classes=None):
         k = self.k = len(orbit)
-        self.model, self.orbit = model, orbit
+        self.model, self.orbit, self.table, self.tie = model, orbit, table, tie
         self.Q = [model.back(orbit[j - 1]) for j in range(k)]
         self.v = [[[min(Q[m][a] for m in model.ball[t]) for a in model.A] for t in model.S] for Q in self.Q]
         gaps = [max(row) - x for v in self.v for row in v for x in row]
         gaps += [self.Q[j][s][a] - orbit[j][s] for j in range(k) for s in model.S for a in model.A]
+        gaps += [self.Q[j][m][a] - self.v[j][t][a] for j in range(k) for t in model.S for m in model.ball[t] for a in model.A]
         gaps = [gap for gap in gaps if gap > 0]
         self.radius = radius or (min(gaps) / 3 if gaps else Fraction(1))
-        self.C = [[[a for a in model.A if row[a] >= max(row) - 2 * self.radius] for row in v] for v in self.v]
+        self.delta = far(table, self.Q[0])
+        self.entries = [(s, a) for s in model.S for a in model.A]
+        if classes:
+            self.use({(s, a): classes[s][a] for s, a in self.entries})
+        else:
+            self.use(self.numbered({(s, a): (table[s][a], model.R[s][a]) for s, a in self.entries}))
+            while not self.stable():
+                self.use(self.numbered({e: (self.klass[e], [self.moves(j, *e) for j in range(k)]) for e in self.entries}))
+        self.classes = [[self.klass[s, a] for a in model.A] for s in model.S]
         self.low = [model.extreme_value([sorted({a for t in model.ball[s] for a in C[t]}) for s in model.S], min) for C in self.C]
         self.single = [all(len(c) == 1 for c in C) for C in self.C]
         self.fixed = []
         for j in range(k):
-            played = [{a for t in model.ball[s] for a in self.C[j][t] if self.Q[j][s][a] == orbit[j][s]} for s in model.S]
-            if all(len(a) == 1 for a in played):
-                self.fixed.append(model.value([min(a) for a in played]))
+            action = [self.action(j, s) for s in model.S]
+            if None not in action:
+                self.fixed.append(model.value(action))
             else:
                 self.fixed.append(orbit[0] if k == 1 else None)
 
-    def valid(self, table):
-        m = self.model
-        for j in range(self.k):
-            Q, U, C, v = self.Q[j], self.orbit[j], self.C[j], self.v[j]
-            for t in m.S:
-                if len({v[t][a] for a in C[t]}) != 1:
-                    return False
+    def numbered(self, key):
+        keys = []
+        for e in self.entries:
+            if key[e] not in keys:
+                keys.append(key[e])
+        return {e: keys.index(key[e]) for e in self.entries}
+
+    def use(self, klass):
+        """Takes these classes, and finds C_j, A_j and which states are settled."""
+        model, self.klass, self.C, self.A, self.settled = self.model, klass, [], [], []
+        for Q, v, U in zip(self.Q, self.v, self.orbit):
+            C = []
+            for t in model.S:
+                M = [{klass[m, a] for m in model.ball[t] if Q[m][a] <= v[t][a] + 2 * self.radius} for a in model.A]
+                good = [a for a in model.A if v[t][a] >= max(v[t]) - 2 * self.radius]
+                C.append([b for b in good if not any(M[a] <= M[b] and (a < b if self.tie == "lowest" else a > b) for a in good)])
+            self.C.append(C)
+            self.A.append([{a for t in model.ball[s] for a in C[t] if Q[s][a] == U[s]} for s in model.S])
+            self.settled.append([all(len(C[t]) == 1 for t in model.ball[s]) for s in model.S])
+
+    def equivalent(self, j, s, t):
+        if s == t:
+            return True
+        both = self.settled[j][s] and self.settled[j][t]
+        return both and {self.klass[s, a] for a in self.A[j][s]} == {self.klass[t, a] for a in self.A[j][t]}
+
+    def moves(self, j, s, a):
+        """The probability of moving from (s,a) into the states that are equivalent to each state."""
+        return [sum(p for u, p in self.model.P[s][a].items() if self.equivalent(j, u, t)) for t in self.model.S]
+
+    def stable(self):
+        """Condition 4."""
+        return all(self.table[s][a] == self.table[t][b] and self.model.R[s][a] == self.model.R[t][b]
+                   and all(self.moves(j, s, a) == self.moves(j, t, b) for j in range(self.k))
+                   for s, a in self.entries for t, b in self.entries if self.klass[s, a] == self.klass[t, b])
+
+    def action(self, j, s):
+        """a_j(s), or None."""
+        played = self.A[j][s]
+        if len(played) == 1:
+            return min(played)
+        if not self.settled[j][s] or len({self.klass[s, a] for a in played}) != 1:
+            return None
+        options = [(t, self.C[j][t][0]) for t in self.model.ball[s] if self.C[j][t][0] in played]
+        return (min if self.tie == "lowest" else max)(options)[1]
+
+    def valid(self):
+        m, numbers = self.model, [self.klass[e] for e in self.entries]
+        for Q, U, C in zip(self.Q, self.orbit, self.C):
             for s in m.S:
                 if not U[s] == min(min(Q[s][a] for a in C[t]) for t in m.ball[s]):
                     return False
@@ -176,11 +230,22 @@ class Limit:
                     return False
                 if any(U[s] < Q[s][a] <= U[s] + 2 * self.radius for t in m.ball[s] for a in C[t]):
                     return False
-        return far(table, self.Q[0]) <= self.radius
+        first_occurrences = [c for i, c in enumerate(numbers) if c not in numbers[:i]]
+        return self.delta <= self.radius and self.stable() and first_occurrences == sorted(set(numbers)) == list(range(len(set(numbers))))
 
 
-def find_limit(model, tie, most=400, longest=6):
-    """(N, Limit), or (rounds, None) where none is found."""
+FOUND = {}  # what find_limit found, by model and tie: the test asks for the same models again
+
+
+def find_limit(model, tie):
+    """(N, orbit), or (rounds, None) where none is found."""
+    key = json.dumps(model_json(model)), tie
+    if key not in FOUND:
+        FOUND[key] = search_limit(model, tie)
+    return FOUND[key]
+
+
+def search_limit(model, tie, most=400, longest=6):
     floats = Model.__new__(Model)
     floats.__dict__.update(model.__dict__)
     floats.g = float(model.g)
@@ -193,10 +258,9 @@ def find_limit(model, tie, most=400, longest=6):
     count = 1
     while count <= 90:
         tables, pairs = run(model, tie, count + period)
-        actions = [[policy[t] for t in attack] for policy, attack in pairs[count:]]
-        limit = Limit(model, orbit_values(model, actions))
-        if limit.valid(tables[count]):
-            return count, limit
+        orbit = orbit_values(model, [[policy[t] for t in attack] for policy, attack in pairs[count:]])
+        if Limit(model, orbit, tables[count], tie).valid():
+            return count, orbit
         count += 1 + count // 6
     return 3, None
 
@@ -280,11 +344,11 @@ def certificate(model, **options):
     return examine(model, **options)[0]
 
 
-def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, repeat=1, with_limit=True, with_beliefs=True,
+def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, repeat=1, classes=None, with_limit=True, with_beliefs=True,
             belief_slack=Fraction(0)):
     """The certificate of a model, and all instances of each claim, the least first.
 
-    `rounds`, `radius`, `repeat` (the orbit, that many times) and `belief_slack` ask for others that are as true.
+    `rounds`, `radius`, `repeat` (the orbit, that many times), `classes` and `belief_slack` ask for others that are as true.
     """
     S, A, g = model.S, model.A, model.g
     Vstar = model.extreme_value([list(A)] * model.n, max)
@@ -297,14 +361,12 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
     L_rep, L_tv = l_r + g * model.n * l_p * size / (1 - g), l_r + g * tv * span / (1 - g)
     D_print, D_sound, D_rep, D_tv = (2 * model.eps * g * L for L in (L_print, L_sound, L_rep, L_tv))
 
-    N, limit = find_limit(model, tie)
-    if not with_limit:
-        limit = None
-    N = rounds or N
+    N, orbit = find_limit(model, tie)
+    N, limit = rounds or N, None
     tables, all_pairs = run(model, tie, N)
-    if limit:
-        limit = Limit(model, limit.orbit * repeat, radius)
-        if not limit.valid(tables[N]):
+    if orbit and with_limit:
+        limit = Limit(model, orbit * repeat, tables[N], tie, radius, classes)
+        if not limit.valid():
             raise ValueError("not a limit after so many rounds, or with this radius")
     pairs, indices, first_round = [], [], []
     for n, pair in enumerate(all_pairs):
@@ -318,9 +380,18 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
     test_value = robust_value(model, test_policy)
 
     # An instance is (at, left, right, whether it can prove a violation).
-    def lipschitz(X, n, L, extra, counts):
-        return [({"n": n, "states": [s, t], "action": a}, abs(X[s][a] - X[t][a]) + extra, L * model.low[s][t], counts)
-                for s, t in model.pairs_of_states() for a in A]
+    def jumps(s, t, a):
+        return [abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)) for u in S]
+
+    def lipschitz(X, n, factor, slack):
+        found = []
+        for s, t in model.pairs_of_states():
+            r = max([l_r * model.low[s][t]] + [abs(model.R[s][a] - model.R[t][a]) for a in A])
+            p = max([l_p * model.low[s][t]] + [jump for a in A for jump in jumps(s, t, a)])
+            for a in A:
+                added = slack * sum(jumps(s, t, a)) / 2
+                found.append(({"n": n, "states": [s, t], "action": a}, abs(X[s][a] - X[t][a]) + added, r + factor * p, added == 0))
+        return found
 
     def gap(X, n, right, counts):
         return [({"n": n, "states": [s], "action": a}, Qstar[s][a] - X[s][a], right, counts) for s in S for a in A]
@@ -343,16 +414,17 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
     paper_factor, sharp_factor = (1 + g) / (1 - g)**2, 1 / (1 - g)**2
     instances = {}
     if limit:
-        r, k = limit.radius, limit.k
+        delta, k = limit.delta, limit.k
         low, ours = [model.back(V) for V in limit.low], [V and model.back(V) for V in limit.fixed]
         if all(ours) and all(real):
             X = [(back, first_round[i]) for i in range(len(pairs)) for back in (model.back(fixed[i]), model.back(robust[i]))]
             X += [(back, N + j) for j in phases for back in (low[j], ours[j])]
-            instances["lemma-1"] = sum((lipschitz(back, n, L_print, 0, True) for back, n in X), []) or nothing
-        instances["lemma-1-iterates"] = (sum((lipschitz(tables[n], n, L_rep, 0, True) for n in range(N)), [])
-                                         + sum((lipschitz(limit.Q[j], N + j, L_rep, 2 * r, False) for j in phases), [])) or nothing
+            instances["lemma-1"] = sum((lipschitz(back, n, model.n * r_paper / (1 - g), 0) for back, n in X), []) or nothing
+        factor = g * model.n * size / (1 - g)
+        iterates = [(tables[n], n, 0) for n in range(N + 1)] + [(limit.Q[j], N + j, 2 * g * delta) for j in phases]
+        instances["lemma-1-iterates"] = sum((lipschitz(X, n, factor, slack) for X, n, slack in iterates), []) or nothing
         loss = [(tstar(tables[n]), tables[n + 1], n, Fraction(0), True) for n in range(N)]
-        loss += [(tstar(limit.Q[j]), limit.Q[(j + 1) % k], N + j, 2 * g * r, False) for j in phases]
+        loss += [(tstar(limit.Q[j]), limit.Q[(j + 1) % k], N + j, 2 * g * delta, g * delta == 0) for j in phases]
         instances["lemma-2"] = [({"n": n, "states": [s], "action": a}, abs(X[s][a] - Y[s][a]) + extra, D_print, counts)
                                 for X, Y, n, extra, counts in loss for s in S for a in A]
     instances["lemma-3"] = []
@@ -402,7 +474,7 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
               "pairs": [{"policy": list(policy), "attack": list(attack), "fixed": text(f), "robust": text(w)}
                         for (policy, attack), f, w in zip(pairs, fixed, robust)],
               "rounds": indices,
-              "limit": limit and {"period": limit.k, "radius": text(limit.radius), "orbit": text(limit.orbit),
+              "limit": limit and {"period": limit.k, "radius": text(limit.radius), "classes": limit.classes, "orbit": text(limit.orbit),
                                   "low": text(limit.low), "fixed": text(limit.fixed)},
               "test_time": {"policy": test_policy, "robust": text(test_value)}, "belief_game": game, "claims": claims}
     return result, instances
@@ -452,7 +524,7 @@ def reference():
                      points=[[0, 0], [1, "1/2"], [2, 2]], norm="linf")
     mirror = Model(half, 1, [[1, 1], [0, 0], [1, 1]], [[{0: half, 1: half}] * 2, [{0: 1}, {2: 1}], [{2: half, 1: half}] * 2],
                    points=[[-1], [0], [1]], norm="l1")
-    # With x = 0 the limit ties: min Q(.,0) = min Q(.,1) = 2/3, and the two actions lead to different backups, so it is not decided.
+    # With x = 0 the limit ties: min Q(.,0) = min Q(.,1) = 2/3, and the two actions lead to different backups; classes decide.
     twins, twins_tie = (Model(half, 1, [[1, x], [1, x], [0, 3]],
                               [[{2: 1}, {0: half, 1: half}], [{2: 1}, {0: half, 1: half}], [{0: 1}, {2: 1}]],
                               points=[[0], [0], [1]], norm="l2") for x in ("-1/5", 0))
@@ -463,6 +535,7 @@ def reference():
         "cycle": certificate(cycle),
         "cycle_ties": certificate(cycle_ties),
         "cycle_ties_highest": certificate(cycle_ties, tie="highest"),
+        "cycle_ties_apart": certificate(cycle_ties, classes=[[0, 1, 2], [3, 4, 5]]),
         "chain_l1": certificate(chain),
         "plane_l2": certificate(plane),
         "islands": certificate(islands),
