@@ -173,6 +173,40 @@ TEST(Claims, ThatNeedTheLimitAreUndeterminedWithoutIt) {
   }
 }
 
+/// Its sides are right, and its verdict too, but others are nearer to each other.
+TEST(Claims, AnInstanceThatIsNotTheTightestIsRefused) {
+  json certificate = sample_certificates().at(paper);
+  json& a = certificate["claims"][5];
+  EXPECT_EQ(a["claim"], "A");
+  a["left"] = "0";
+  a["at"]["states"] = json::array({1});
+  a["at"]["action"] = 1;
+  const std::string line = refusal(certificate.dump());
+  EXPECT_EQ(line, "$.claims[5].left: 0 against right 726, expected the instance of least right - left, which is 716");
+}
+
+/// Any number low enough is a lower bound of the belief game, and then the loss is large; that violates nothing.
+TEST(Claims, ABoundOfAValueProvesNoViolation) {
+  json certificate = sample_certificates().at(paper);
+  json &game = certificate["belief_game"], &f = certificate["claims"][10];
+  game["exact"] = false;
+  game["values"] = json::array({"-1000", "-1000", "-1000", "-1000"});
+  f["verdict"] = "violated";
+  f["left"] = "1000";
+  EXPECT_EQ(refusal(certificate.dump()),
+            "$.claims[10].verdict: violated, expected undetermined: no instance decides it");
+  f = {{"claim", "F"}, {"verdict", "undetermined"}};
+  EXPECT_EQ(refusal(certificate.dump()), "");
+}
+
+TEST(BeliefGame, HasNoPositionThatIsNotReached) {
+  json certificate = sample_certificates().at(paper);
+  json& game = certificate["belief_game"];
+  game["positions"].insert(game["positions"].begin() + 3, json::array({2, json::array({1, 2})}));
+  game["values"].push_back("-40");
+  EXPECT_EQ(refusal(certificate.dump()), "$.belief_game.positions[3]: not reached, expected only positions that are");
+}
+
 TEST(Claims, SidesThatAreMovedTogetherAreRefused) {
   json certificate = sample_certificates().at(paper);
   certificate["claims"][4]["left"] = "11";
