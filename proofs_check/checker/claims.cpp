@@ -106,18 +106,18 @@ void Claims::of_phase(std::size_t j, const Limit& limit) {
   const std::size_t n = rounds_ + j;
   const Phase& phase = limit.phases[j];
   const Phase& following = limit.phases[(j + 1) % limit.phases.size()];
-  // `low` is the value of the policy of the phase itself, not only below it.
-  const bool low_proves = phase.settled || limit.phases.size() == 1;
+  const bool low_proves = phase.attained;
   if (!phase.back_of_fixed || !low_proves) expect_undetermined({lemma_1}, "a phase's values are only bounded");
   if (ClaimCheck* check = find(lemma_1)) {
     check->see_pairs(n, phase.back_of_low, 0, l_print_);
     check->see_pairs(n, *phase.back_of_fixed, 0, l_print_);
   }
-  const Rational two_r = 2 * limit.radius;
-  if (ClaimCheck* check = find(lemma_1_iterates)) check->see_pairs(n, phase.q, two_r, l_rep_, false);
+  const Rational twice = 2 * limit.delta;
+  const bool exact = limit.delta == 0;
+  if (ClaimCheck* check = find(lemma_1_iterates)) check->see_pairs(n, phase.q, twice, l_rep_, exact);
   if (ClaimCheck* check = find(lemma_2)) {
     const Table loss = absolute(difference(back(m_, best_values(m_, phase.q)), following.q));
-    check->see_each(n, loss, g_ * two_r, delta_print_, false);
+    check->see_each(n, loss, g_ * twice, delta_print_, exact);
   }
   const Rational one_sided = 1 / (rest_ * rest_), two_sided = (1 + g_) * one_sided;
   if (ClaimCheck* check = find(theorem_1)) {

@@ -1,6 +1,8 @@
 #include "exact.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 namespace maximin::checker {
 namespace {
@@ -9,6 +11,13 @@ namespace {
 bool is_natural(std::string_view text) {
   return !text.empty() && (text[0] != '0' || text.size() == 1) &&
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Six significant digits.
+std::string digits(const Rational& x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", x.get_d());
+  return text.data();
 }
 
 }  // namespace
@@ -29,9 +38,7 @@ std::optional<Rational> parse_number(std::string_view text) {
 std::string shown(const Rational& x) {
   constexpr std::size_t room = 40;
   const std::string text = x.get_str();
-  return text.size() <= room
-             ? text
-             : "about " + std::to_string(x.get_d()) + " (" + std::to_string(text.size()) + " characters)";
+  return text.size() <= room ? text : "about " + digits(x) + " (" + std::to_string(text.size()) + " characters)";
 }
 
 Root root(const Rational& q) {

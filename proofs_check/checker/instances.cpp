@@ -162,6 +162,7 @@ std::vector<ClaimCheck> read_claims(const Node& node, const Model& model, std::s
     if (claims.size() == 1 || claims[claims.size() - 2].id() < claims.back().id()) continue;
     refuse(entry.path() + ".claim", "not after the one before it, expected the order of the format and none twice");
   }
+  if (claims.empty()) refuse(node.path(), "empty, expected a claim at least");
   return claims;
 }
 

@@ -24,7 +24,7 @@ constexpr const char* notes = R"(Examples:
   check_certificate --json a.json b.json   the same for programs, sides exact
   verify_bound certify lake.json | check_certificate -
 
-Exit codes: 0 all claims hold, 1 a claim is violated, and that is proved, 3 a claim is undetermined or there is none,
+Exit codes: 0 all claims hold, 1 a claim is violated, and that is proved, 3 a claim is undetermined,
 2 bad usage, or not a certificate: one line says what is false in it)";
 
 /// The worst comes first: a file that is no certificate, a violation, a claim that nothing is said of.
@@ -36,7 +36,7 @@ Exit worse(Exit x, Exit y) {
 }
 
 Exit outcome(const Report& report) {
-  Exit code = report.claims.empty() ? undetermined : all_hold;
+  Exit code = all_hold;
   for (const ClaimVerdict& claim : report.claims) {
     if (claim.verdict != "holds") code = worse(code, claim.verdict == "violated" ? violated : undetermined);
   }
@@ -64,7 +64,6 @@ void print_table(const std::string& name, const Report& report) {
   std::printf("%s: a certificate of %zu states, %zu actions, %zu rounds", name.c_str(), report.states, report.actions,
               report.rounds);
   std::printf(report.period == 0 ? ", no limit\n" : ", limit of period %zu\n", report.period);
-  if (report.claims.empty()) std::printf("no claims\n");
   for (const ClaimVerdict& claim : report.claims) {
     std::printf("%-16s  %-12s", claim.claim.c_str(), claim.verdict.c_str());
     if (claim.verdict != "undetermined") {

@@ -49,6 +49,7 @@ void read_transitions(const Node& node, Model& m) {
 Points read_points(const Node& node, const Model& m) {
   Points points;
   for (const Node& row : node.items(m.states)) {
+    if (points.empty() && row.items().empty()) refuse(row.path(), "empty, expected a coordinate at least");
     const std::vector<Node> coordinates = points.empty() ? row.items() : row.items(points[0].size());
     points.emplace_back();
     for (const Node& x : coordinates) points.back().push_back(x.number());

@@ -36,16 +36,16 @@ Table check_rounds(const Indices& rounds, const Model& model, const std::vector<
 
 struct Phase {
   Table q;                             ///< Q^j
-  bool settled = false;                ///< every C_j(t) has one member
+  bool attained = false;               ///< back_of_low is that of the policy's value, not only below it
   Table back_of_low;                   ///< back of its V_j
   std::optional<Table> back_of_fixed;  ///< back of its `fixed`, where that is not null
 };
 struct Limit {
-  Rational radius;
+  Rational delta;  ///< max |Q_N - Q^0|
   std::vector<Phase> phases;
 };
 /// "limit", not null; `last` is Q_N.
-Limit check_limit(const Node& node, const Model& model, const Table& last);
+Limit check_limit(const Node& node, const Model& model, const Table& last, bool highest);
 
 /// "test_time": returns back of the values of the maximin policy of Q* against its optimal attacker.
 Table check_test_time(const Node& node, const Model& model, const Table& q_star, bool highest);

@@ -158,7 +158,7 @@ TEST(Claims, AreLeftOutOrUndeterminedFreely) {
   certificate["claims"][0] = {{"claim", "lemma-1"}, {"verdict", "undetermined"}};
   EXPECT_EQ(refusal(certificate.dump()), "");
   certificate["claims"] = json::array();
-  EXPECT_EQ(refusal(certificate.dump()), "");
+  EXPECT_EQ(refusal(certificate.dump()), "$.claims: empty, expected a claim at least");
 }
 
 TEST(Claims, ThatNeedTheLimitAreUndeterminedWithoutIt) {

@@ -207,6 +207,7 @@ bool may_vary(const Mutant& mutant) {
   const auto starts = [&](const std::string& start) { return field.compare(0, start.size(), start) == 0; };
   if (starts("$.model") || field == "$.reading" || field == "$.tie") return true;  // another model, as true
   if (starts("$.constants") && field.find(".at") != field.npos) return true;
+  if (starts("$.limit.classes")) return true;  // finer ones
   if (field == "$.limit.radius" || starts("$.rounds") || field == "$.claims as a whole") return true;
   if (field == "$.belief_game.exact") return original["belief_game"]["exact"] == true;
   if (field == "$.belief_game as a whole" || field == "$.limit as a whole") return true;  // null

@@ -267,35 +267,76 @@ class NaiveCertificate {
     return expect(order.size() == c_["pairs"].size(), "a pair in no round");
   }
 
+  /// What one class of entries has in common in a phase, as text: Q_N, reward, and where it goes.
+  std::string nature(int s, int a, const std::vector<std::string>& kind) const {
+    std::map<std::string, Q> moves;
+    for (int next = 0; next < n_; ++next) moves[kind[next]] += p_[s][a][next];
+    std::string text = q_.back()[s][a].get_str() + " " + r_[s][a].get_str();
+    for (const auto& [where, p] : moves) {
+      if (p > 0) text += " " + where + ":" + p.get_str();
+    }
+    return text;
+  }
+
   bool limit() {
     const Json& limit = c_["limit"];
     if (limit.is_null()) return true;
     const int k = limit["period"];
     const Q r = number(limit["radius"]);
     if (!expect(r > 0, "radius")) return false;
+    const auto classes = limit["classes"].get<std::vector<std::vector<int>>>();
+    int next_class = 0;
+    for (const auto& row : classes) {
+      for (const int number : row) {
+        if (!expect(number <= next_class, "numbers of classes")) return false;
+        next_class = std::max(next_class, number + 1);
+      }
+    }
     for (int j = 0; j < k; ++j) {
       const Values u = numbers(limit["orbit"][j]);
       const Table q = back(numbers(limit["orbit"][(j + k - 1) % k]));
       orbit_.push_back(q);
+      if (j == 0) delta_ = distance(q_.back(), q);
+      if (!expect(delta_ <= r, "condition 3")) return false;
+
       std::vector<States> candidates(n_);
-      bool settled = true;
       for (int t = 0; t < n_; ++t) {
         Values v;
+        std::vector<States> least(m_);
         for (int a = 0; a < m_; ++a) {
-          v.push_back(q[t][a]);
-          for (const int state : ball_[t]) v[a] = std::min(v[a], q[state][a]);
+          Q worst = q[t][a];
+          for (const int state : ball_[t]) worst = std::min(worst, q[state][a]);
+          v.push_back(worst);
+          for (const int state : ball_[t]) {
+            if (q[state][a] <= worst + 2 * r) least[a].insert(classes[state][a]);
+          }
         }
         const Q most = *std::max_element(v.begin(), v.end());
+        std::vector<int> near;  // in the order of tie
         for (int a = 0; a < m_; ++a) {
-          if (v[a] < most - 2 * r) continue;
-          if (!expect(v[a] == most, "condition 1")) return false;
-          candidates[t].insert(a);
+          if (v[a] >= most - 2 * r) near.push_back(a);
         }
-        settled = settled && candidates[t].size() == 1;
+        if (tie_highest_) std::reverse(near.begin(), near.end());
+        for (std::size_t b = 0; b < near.size(); ++b) {
+          bool beaten = false;
+          for (std::size_t a = 0; a < b; ++a) {
+            bool contained = true;
+            for (const int number : least[near[a]]) contained = contained && least[near[b]].count(number);
+            beaten = beaten || contained;
+          }
+          if (!beaten) candidates[t].insert(near[b]);
+        }
       }
+      const auto is_settled = [&](int s) {
+        return std::all_of(ball_[s].begin(), ball_[s].end(), [&](int t) { return candidates[t].size() == 1; });
+      };
+
       const Values low = numbers(limit["low"][j]);
       const Table back_of_low = back(low);
-      std::vector<States> attaining(n_);
+      std::vector<States> attaining(n_), attained_classes(n_);
+      std::vector<std::string> kind;
+      bool all_known = true, all_settled = true;
+      std::vector<int> provoked;
       for (int s = 0; s < n_; ++s) {
         Values least, greatest, lows;
         for (const int t : ball_[s]) {
@@ -303,33 +344,47 @@ class NaiveCertificate {
           for (const int a : candidates[t]) {
             of_t.push_back(q[s][a]);
             lows.push_back(back_of_low[s][a]);
-            if (q[s][a] == u[s]) attaining[s].insert(a);
-            if (!expect(!(u[s] < q[s][a] && q[s][a] <= u[s] + 2 * r), "condition 3")) return false;
+            if (q[s][a] == u[s]) attaining[s].insert(a), attained_classes[s].insert(classes[s][a]);
+            if (!expect(!(u[s] < q[s][a] && q[s][a] <= u[s] + 2 * r), "condition 2")) return false;
           }
           least.push_back(*std::min_element(of_t.begin(), of_t.end()));
           greatest.push_back(*std::max_element(of_t.begin(), of_t.end()));
         }
-        if (!expect(u[s] == *std::min_element(least.begin(), least.end()) &&
-                        u[s] == *std::min_element(greatest.begin(), greatest.end()),
-                    "condition 2")) {
-          return false;
-        }
+        const bool same = u[s] == *std::min_element(least.begin(), least.end()) &&
+                          u[s] == *std::min_element(greatest.begin(), greatest.end());
+        if (!expect(same, "condition 1")) return false;
         if (!expect(low[s] == *std::min_element(lows.begin(), lows.end()), "low")) return false;
-        for (int a = 0; a < m_; ++a) {
-          if (j == 0 && !expect(magnitude(q_.back()[s][a] - q[s][a]) <= r, "condition 4")) return false;
+        kind.push_back(is_settled(s) ? Json(attained_classes[s]).dump() : "state " + std::to_string(s));
+        all_settled = all_settled && is_settled(s);
+        if (attaining[s].size() == 1) {
+          provoked.push_back(*attaining[s].begin());
+        } else if (is_settled(s) && attained_classes[s].size() == 1) {
+          std::vector<int> ball(ball_[s].begin(), ball_[s].end());
+          if (tie_highest_) std::reverse(ball.begin(), ball.end());
+          int first = 0;
+          while (!attaining[s].count(*candidates[ball[first]].begin())) ++first;
+          provoked.push_back(*candidates[ball[first]].begin());
+        } else {
+          all_known = false;
         }
       }
-      low_proves_.push_back(settled || k == 1);
+      std::map<int, std::string> natures;
+      for (int s = 0; s < n_; ++s) {
+        for (int a = 0; a < m_; ++a) {
+          const std::string own = nature(s, a, kind);
+          if (!expect(natures.emplace(classes[s][a], own).first->second == own, "condition 4")) return false;
+        }
+      }
+      low_proves_.push_back(all_settled || k == 1);
       low_.push_back(back_of_low);
-      const bool one = std::all_of(attaining.begin(), attaining.end(), [](const States& a) { return a.size() == 1; });
       const Json& given = limit["fixed"][j];
-      if (!expect(given.is_null() == (!one && k > 1), "fixed null")) return false;
+      if (!expect(given.is_null() == (!all_known && k > 1), "fixed null")) return false;
       fixed_.emplace_back();
       if (given.is_null()) continue;
       const Values fixed = numbers(given);
       fixed_.back() = back(fixed);
       for (int s = 0; s < n_; ++s) {
-        if (!expect(fixed[s] == (one ? (*fixed_.back())[s][*attaining[s].begin()] : u[s]), "fixed_j")) return false;
+        if (!expect(fixed[s] == (all_known ? (*fixed_.back())[s][provoked[s]] : u[s]), "fixed_j")) return false;
       }
     }
     return true;
@@ -468,12 +523,12 @@ class NaiveCertificate {
     std::set<std::string> unknown;
     for (int j = 0; j < k; ++j) {
       const Json at{{"n", rounds + j}};
-      const Q r = number(c_["limit"]["radius"]);
       if (!fixed_[j] || !low_proves_[j]) unknown.insert("lemma-1");
       lipschitz("lemma-1", rounds + j, low_[j], 0, l_print_, true);
       if (fixed_[j]) lipschitz("lemma-1", rounds + j, *fixed_[j], 0, l_print_, true);
-      lipschitz("lemma-1-iterates", rounds + j, orbit_[j], 2 * r, l_rep_, false);
-      each("lemma-2", at, greedy_backup(orbit_[j]), orbit_[(j + 1) % k], true, 2 * g_ * r, e2 * l_print_, false);
+      lipschitz("lemma-1-iterates", rounds + j, orbit_[j], 2 * delta_, l_rep_, delta_ == 0);
+      each("lemma-2", at, greedy_backup(orbit_[j]), orbit_[(j + 1) % k], true, 2 * g_ * delta_, e2 * l_print_,
+           delta_ == 0);
       each("theorem-1", at, q_star_, fixed_[j] ? *fixed_[j] : low_[j], false, 0,
            (1 + g_) / (rest * rest) * e2 * l_print_, fixed_[j].has_value());
       each("A", at, q_star_, low_[j], false, 0, (1 + g_) / (rest * rest) * e2 * l_sound_, low_proves_[j]);
@@ -496,6 +551,7 @@ class NaiveCertificate {
     }
     if (k == 0) unknown = {"lemma-1", "lemma-1-iterates", "lemma-2", "theorem-1", "A", "B", "C", "D"};
     if (c_["belief_game"].is_null()) unknown.insert("F");
+    if (!expect(!c_["claims"].empty(), "no claims")) return false;
     for (const Json& entry : c_["claims"]) {
       if (entry["verdict"] == "undetermined") continue;
       const std::string name = entry["claim"];
@@ -531,7 +587,7 @@ class NaiveCertificate {
   Values v_star_, belief_worst_;
   Table q_star_;
   std::map<std::string, Q> constant_;
-  Q l_print_, l_sound_, l_rep_, l_tv_;
+  Q l_print_, l_sound_, l_rep_, l_tv_, delta_;
   std::vector<Table> q_, orbit_, low_;
   std::vector<std::optional<Table>> fixed_;
   std::vector<bool> low_proves_;
