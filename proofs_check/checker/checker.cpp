@@ -33,7 +33,7 @@ Report check_sections(const Node& root) {
       check_rounds(rounds, model, pairs, highest, [&claims](const Round& round) { claims.of_round(round); });
   std::optional<Limit> limit;
   if (decided) limit = check_limit(root.member("limit"), model, last, highest);
-  claims.of_limit(limit ? &*limit : nullptr);
+  claims.of_limit(limit ? &*limit : nullptr, last);
   claims.of_test_time(check_test_time(root.member("test_time"), model, q_star, highest));
   std::optional<BeliefGame> game;
   const Node belief_game = root.member("belief_game");

@@ -12,7 +12,7 @@ class Claims {
          const Table& q_star, const std::vector<Pair>& pairs, std::size_t rounds);
 
   void of_round(const Round& round);
-  void of_limit(const Limit* limit);
+  void of_limit(const Limit* limit, const Table& last);
   void of_test_time(const Table& back_of_robust);
   void of_belief_game(const BeliefGame* game);
 
@@ -21,6 +21,7 @@ class Claims {
   /// Those of them that are decided.
   std::vector<ClaimCheck*> find(std::initializer_list<ClaimId> ids);
   void expect_undetermined(std::initializer_list<ClaimId> ids, const char* why);
+  Table lipschitz_sides(const Rational& factor) const;
   void of_phase(std::size_t j, const Limit& limit);
   Rational finite_n(const Rational& delta, std::size_t n) const;
   Rational limit_of_finite_n(const Rational& delta) const;
@@ -32,8 +33,9 @@ class Claims {
   const std::vector<Pair>& pairs_;
   std::vector<Table> gaps_, images_;  // by pair: Q* - back(robust), and back(s -> Q*(s,c(s)))
   std::size_t rounds_;
-  Rational g_, rest_;  // and 1 - g
-  Rational l_print_, l_rep_, delta_print_, delta_sound_, delta_rep_, delta_tv_, start_;
+  Rational g_, rest_;              // and 1 - g
+  Table right_print_, right_rep_;  // of lemma-1 and of its iterates, by (s,t)
+  Rational delta_print_, delta_sound_, delta_rep_, delta_tv_, start_;
 };
 
 }  // namespace maximin::checker

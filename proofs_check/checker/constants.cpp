@@ -14,14 +14,6 @@ Numerators differences(const Model& m, const Table& table) {
   };
 }
 
-std::vector<Integer> row_differences(const Model& m, std::size_t s, std::size_t t, std::size_t a) {
-  std::vector<Integer> differences(m.states);
-  for (const auto& [next, p] : m.rows[m.at(s, a)]) differences[next] += p;
-  for (const auto& [next, p] : m.rows[m.at(t, a)]) differences[next] -= p;
-  for (Integer& x : differences) x = abs(x);
-  return differences;
-}
-
 /// One constant and its witness, `bottom` being the denominator of the numerators.
 Rational check_constant(const Node& node, const Model& m, const Integer& bottom, const Numerators& numerators) {
   node.expect_members({"value", "at"});
@@ -63,9 +55,7 @@ Constants check_constants(const Node& node, const Model& m, const Table& q_star)
   node.expect_members({"l_r", "l_p", "k", "l_star", "r_min", "r_max"});
   const auto row = [&m](std::size_t s, std::size_t t, std::size_t a) { return row_differences(m, s, t, a); };
   const auto sum_of_row = [&m](std::size_t s, std::size_t t, std::size_t a) -> std::vector<Integer> {
-    Integer sum;
-    for (const Integer& x : row_differences(m, s, t, a)) sum += x;
-    return {sum};
+    return {sum(row_differences(m, s, t, a))};
   };
   Constants c;
   c.l_r = check_constant(node.member("l_r"), m, m.rewards.bottom, differences(m, m.rewards));

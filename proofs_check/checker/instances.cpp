@@ -106,36 +106,42 @@ void ClaimCheck::see_each(std::size_t n, const Table& left, const Rational& more
   if (at_.n == n) see_at(at_.s, at_.a);
 }
 
-void ClaimCheck::see_pairs(std::size_t n, const Table& x, const Rational& more, const Rational& lipschitz,
-                           bool proves) {
+void ClaimCheck::see_pairs(std::size_t n, const Table& x, const Rational& slack, const Table& right) {
   const Model& m = model_;
-  const auto see_at = [&](const Place& place) {
-    const Integer difference = abs(Integer(x.top[m.at(place.s, place.a)] - x.top[m.at(place.t, place.a)]));
-    see(place, Table{{difference}, x.bottom}[0] + more, lipschitz * m.near_at(place.s, place.t), proves);
+  // All sides are numerators over x.bottom * of_x, or right.bottom, until the tightest instance is known.
+  const Integer of_x = slack == 0 ? Integer(1) : Integer(slack.get_den() * m.whole);
+  const Integer of_row = slack.get_num() * x.bottom, bottom = x.bottom * of_x;
+  Integer left, added, gap;
+  const auto find_left = [&](const Place& place) {
+    added = slack == 0 ? Integer(0) : Integer(of_row * sum(row_differences(m, place.s, place.t, place.a)));
+    left = x.top[m.at(place.s, place.a)] - x.top[m.at(place.t, place.a)];
+    left = abs(left) * of_x + added;
   };
-  // Which is tightest is decided on numerators over one denominator.
-  const Integer of_distance = lipschitz.get_num() * x.bottom, of_difference = lipschitz.get_den() * m.near.bottom;
+  const auto see_at = [&](const Place& place) {
+    find_left(place);
+    see(place, Table{{left}, bottom}[0], right[place.s * m.states + place.t], added == 0);
+  };
   Place tightest;
-  Integer least, widest, difference;
+  Integer least, widest;
   for (std::size_t s = 0; s < m.states; ++s) {
     for (std::size_t t = s + 1; t < m.states; ++t) {
       if (!m.finite[s * m.states + t]) continue;
-      std::size_t action = 0;
-      widest = -1;
+      Place of_pair;
       for (std::size_t a = 0; a < m.actions; ++a) {
-        difference = x.top[m.at(s, a)] - x.top[m.at(t, a)];
-        difference = abs(difference);
-        if (difference <= widest) continue;
-        swap(widest, difference);
-        action = a;
+        const Place place{n, s, t, a};
+        find_left(place);
+        if ((verdict_ == violated_ && added != 0) || (of_pair.n == n && left <= widest)) continue;
+        swap(widest, left);
+        of_pair = place;
       }
-      difference = m.near.top[s * m.states + t] * of_distance - widest * of_difference;
-      if (tightest.n != Place::none && difference >= least) continue;
-      least = difference;
-      tightest = {n, s, t, action};
+      if (of_pair.n != n) continue;
+      gap = right.top[s * m.states + t] * bottom - widest * right.bottom;
+      if (tightest.n == n && gap >= least) continue;
+      swap(least, gap);
+      tightest = of_pair;
     }
   }
-  if (tightest.n == Place::none) return;
+  if (tightest.n != n) return;
   see_at(tightest);
   if (at_.n == n && at_.s < at_.t && m.finite[at_.s * m.states + at_.t]) see_at(at_);
 }

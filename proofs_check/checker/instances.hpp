@@ -35,8 +35,9 @@ class ClaimCheck {
   /// For every s and a, left(s,a) + more <= right.
   void see_each(std::size_t n, const Table& left, const Rational& more, const Rational& right, bool proves = true);
 
-  /// For every s < t at a finite distance and every a, |x(s,a) - x(t,a)| + more <= lipschitz d-(s,t).
-  void see_pairs(std::size_t n, const Table& x, const Rational& more, const Rational& lipschitz, bool proves = true);
+  /// For every s < t at a finite distance and every a, |x(s,a) - x(t,a)| + slack sum_s' |P(s'|s,a) - P(s'|t,a)| is at
+  /// most right(s,t). An instance proves a violation where nothing is added.
+  void see_pairs(std::size_t n, const Table& x, const Rational& slack, const Table& right);
 
   /// Refuses the entry where the instances that were seen do not bear it out.
   void verify() const;

@@ -178,6 +178,20 @@ Model read_model(const Node& node) {
   return m;
 }
 
+std::vector<Integer> row_differences(const Model& m, std::size_t s, std::size_t t, std::size_t a) {
+  std::vector<Integer> differences(m.states);
+  for (const auto& [next, p] : m.rows[m.at(s, a)]) differences[next] += p;
+  for (const auto& [next, p] : m.rows[m.at(t, a)]) differences[next] -= p;
+  for (Integer& x : differences) x = abs(x);
+  return differences;
+}
+
+Integer sum(const std::vector<Integer>& numbers) {
+  Integer total;
+  for (const Integer& x : numbers) total += x;
+  return total;
+}
+
 Table back(const Model& m, const Table& values) {
   Table q;
   const Integer below = m.discount.get_den() * m.whole * values.bottom;
@@ -185,12 +199,12 @@ Table back(const Model& m, const Table& values) {
   if (bits(m.rows.size(), q.bottom) > m.most_bits) {
     refuse("$", "values over " + std::to_string(bits(1, q.bottom)) + " bits each, expected less to compute with");
   }
-  const Integer of_sum = q.bottom / below * m.discount.get_num(), of_reward = q.bottom / m.rewards.bottom;
+  const Integer of_mean = q.bottom / below * m.discount.get_num(), of_reward = q.bottom / m.rewards.bottom;
   q.top.reserve(m.rows.size());
   for (std::size_t i = 0; i < m.rows.size(); ++i) {
-    Integer sum;
-    for (const auto& [next, p] : m.rows[i]) mpz_addmul(sum.get_mpz_t(), p.get_mpz_t(), values.top[next].get_mpz_t());
-    q.top.emplace_back(m.rewards.top[i] * of_reward + sum * of_sum);
+    Integer mean;
+    for (const auto& [next, p] : m.rows[i]) mpz_addmul(mean.get_mpz_t(), p.get_mpz_t(), values.top[next].get_mpz_t());
+    q.top.emplace_back(m.rewards.top[i] * of_reward + mean * of_mean);
   }
   return q;
 }

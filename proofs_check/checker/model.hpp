@@ -32,6 +32,10 @@ struct Model {
 
 Model read_model(const Node& node);
 
+/// |P(s'|s,a) - P(s'|t,a)| `whole` by s'.
+std::vector<Integer> row_differences(const Model& model, std::size_t s, std::size_t t, std::size_t a);
+Integer sum(const std::vector<Integer>& numbers);
+
 /// back(V)(s,a) = R(s,a) + g sum_s' P(s'|s,a) V(s').
 Table back(const Model& model, const Table& values);
 

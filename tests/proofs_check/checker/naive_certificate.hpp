@@ -222,6 +222,8 @@ class NaiveCertificate {
     const Q size = std::max(magnitude(*least), magnitude(*greatest));
     const Q printed = c_["reading"] == "paper" ? std::max(Q(0), *greatest) : size;
     const Q l_r = constant_["l_r"], of_p = n_ * constant_["l_p"], rest = 1 - g_;
+    of_print_ = n_ * printed / rest;
+    of_rep_ = g_ * n_ * size / rest;
     l_print_ = l_r + of_p * printed / rest;
     l_sound_ = l_r + of_p * size / rest;
     l_rep_ = l_r + g_ * of_p * size / rest;
@@ -453,12 +455,26 @@ class NaiveCertificate {
 
   // ---- Claims: every instance ----
 
-  void lipschitz(const std::string& claim, int n, const Table& x, const Q& more, const Q& l, bool proves) {
+  /// |x(s,a) - x(t,a)| + slack TV(s,t,a) <= r(s,t) + factor p(s,t).
+  void lipschitz(const std::string& claim, int n, const Table& x, const Q& slack, const Q& factor) {
     for (const auto& [pair, d] : near_) {
       const auto [s, t] = pair;
-      for (int a = 0; a < m_ && s < t; ++a) {
-        instances_[claim].push_back(
-            {{{"n", n}, {"states", {s, t}}, {"action", a}}, magnitude(x[s][a] - x[t][a]) + more, l * d, proves});
+      if (s >= t) continue;
+      Q reward = constant_["l_r"] * d, move = constant_["l_p"] * d;
+      Values total_variation;
+      for (int a = 0; a < m_; ++a) {
+        reward = std::max(reward, magnitude(r_[s][a] - r_[t][a]));
+        total_variation.push_back(0);
+        for (int next = 0; next < n_; ++next) {
+          const Q difference = magnitude(p_[s][a][next] - p_[t][a][next]);
+          move = std::max(move, difference);
+          total_variation[a] += difference / 2;
+        }
+      }
+      for (int a = 0; a < m_; ++a) {
+        const Q added = slack * total_variation[a];
+        const Q left = magnitude(x[s][a] - x[t][a]) + added, right = reward + factor * move;
+        instances_[claim].push_back({{{"n", n}, {"states", {s, t}}, {"action", a}}, left, right, added == 0});
       }
     }
   }
@@ -507,10 +523,10 @@ class NaiveCertificate {
       const Json& pair = c_["pairs"][c_["rounds"][n].get<int>()];
       const Table robust = back(numbers(pair["robust"]));
       if (met.insert(c_["rounds"][n].get<int>()).second) {
-        lipschitz("lemma-1", n, back(numbers(pair["fixed"])), 0, l_print_, true);
-        lipschitz("lemma-1", n, robust, 0, l_print_, true);
+        lipschitz("lemma-1", n, back(numbers(pair["fixed"])), 0, of_print_);
+        lipschitz("lemma-1", n, robust, 0, of_print_);
       }
-      lipschitz("lemma-1-iterates", n, q_[n], 0, l_rep_, true);
+      lipschitz("lemma-1-iterates", n, q_[n], 0, of_rep_);
       each("lemma-2", {{"n", n}}, greedy_backup(q_[n]), q_[n + 1], true, 0, e2 * l_print_, true);
       Values image;
       for (int s = 0; s < n_; ++s) image.push_back(q_star_[s][pair["policy"][pair["attack"][s].get<int>()].get<int>()]);
@@ -524,11 +540,12 @@ class NaiveCertificate {
     for (int j = 0; j < k; ++j) {
       const Json at{{"n", rounds + j}};
       if (!fixed_[j] || !low_proves_[j]) unknown.insert("lemma-1");
-      lipschitz("lemma-1", rounds + j, low_[j], 0, l_print_, true);
-      if (fixed_[j]) lipschitz("lemma-1", rounds + j, *fixed_[j], 0, l_print_, true);
-      lipschitz("lemma-1-iterates", rounds + j, orbit_[j], 2 * delta_, l_rep_, delta_ == 0);
+      lipschitz("lemma-1", rounds + j, low_[j], 0, of_print_);
+      if (fixed_[j]) lipschitz("lemma-1", rounds + j, *fixed_[j], 0, of_print_);
+      lipschitz("lemma-1-iterates", rounds + j, orbit_[j], 2 * g_ * delta_, of_rep_);
+      if (j == 0) lipschitz("lemma-1-iterates", rounds, q_.back(), 0, of_rep_);
       each("lemma-2", at, greedy_backup(orbit_[j]), orbit_[(j + 1) % k], true, 2 * g_ * delta_, e2 * l_print_,
-           delta_ == 0);
+           g_ * delta_ == 0);
       each("theorem-1", at, q_star_, fixed_[j] ? *fixed_[j] : low_[j], false, 0,
            (1 + g_) / (rest * rest) * e2 * l_print_, fixed_[j].has_value());
       each("A", at, q_star_, low_[j], false, 0, (1 + g_) / (rest * rest) * e2 * l_sound_, low_proves_[j]);
@@ -587,7 +604,7 @@ class NaiveCertificate {
   Values v_star_, belief_worst_;
   Table q_star_;
   std::map<std::string, Q> constant_;
-  Q l_print_, l_sound_, l_rep_, l_tv_, delta_;
+  Q of_print_, of_rep_, l_print_, l_sound_, l_rep_, l_tv_, delta_;
   std::vector<Table> q_, orbit_, low_;
   std::vector<std::optional<Table>> fixed_;
   std::vector<bool> low_proves_;
