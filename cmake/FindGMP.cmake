@@ -1,14 +1,20 @@
-# The GNU multiple-precision library with its C++ interface, as GMP::gmpxx. On Debian: libgmp-dev.
-find_path(GMP_INCLUDE_DIR gmpxx.h)
+# The GNU multiple precision library, which ships no CMake package: GMP::GMP.
+find_path(GMP_INCLUDE_DIR gmp.h PATH_SUFFIXES ${CMAKE_LIBRARY_ARCHITECTURE})
 find_library(GMP_LIBRARY gmp)
-find_library(GMPXX_LIBRARY gmpxx)
-mark_as_advanced(GMP_INCLUDE_DIR GMP_LIBRARY GMPXX_LIBRARY)
-
+mark_as_advanced(GMP_INCLUDE_DIR GMP_LIBRARY)
 include(FindPackageHandleStandardArgs)
-find_package_handle_standard_args(GMP REQUIRED_VARS GMPXX_LIBRARY GMP_LIBRARY GMP_INCLUDE_DIR)
+find_package_handle_standard_args(GMP REQUIRED_VARS GMP_LIBRARY GMP_INCLUDE_DIR)
+if(GMP_FOUND AND NOT TARGET GMP::GMP)
+  add_library(GMP::GMP UNKNOWN IMPORTED)
+  set_target_properties(GMP::GMP PROPERTIES
+    IMPORTED_LOCATION "${GMP_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${GMP_INCLUDE_DIR}")
+endif()
 
-if(GMP_FOUND AND NOT TARGET GMP::gmpxx)
-  add_library(GMP::gmpxx INTERFACE IMPORTED)
+# Its C++ interface, GMP::gmpxx, where that is there too.
+find_library(GMPXX_LIBRARY gmpxx)
+mark_as_advanced(GMPXX_LIBRARY)
+if(GMP_FOUND AND GMPXX_LIBRARY AND NOT TARGET GMP::gmpxx)
+  add_library(GMP::gmpxx UNKNOWN IMPORTED)
   set_target_properties(GMP::gmpxx PROPERTIES
-    INTERFACE_INCLUDE_DIRECTORIES "${GMP_INCLUDE_DIR}" INTERFACE_LINK_LIBRARIES "${GMPXX_LIBRARY};${GMP_LIBRARY}")
+    IMPORTED_LOCATION "${GMPXX_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${GMP_INCLUDE_DIR}" INTERFACE_LINK_LIBRARIES GMP::GMP)
 endif()

@@ -36,4 +36,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/MaximinConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/MaximinConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/MaximinConfig.cmake ${PROJECT_BINARY_DIR}/MaximinConfigVersion.cmake
   DESTINATION ${package_dir})
+# For the packages that ship no CMake package of their own.
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/FindFLINT.cmake ${PROJECT_SOURCE_DIR}/cmake/FindGMP.cmake
+  DESTINATION ${package_dir}/modules)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <maximin/tabular/exact_control.hpp>
 #include <maximin/tabular/policy_evaluation.hpp>
 #include <maximin/theory/bellman.hpp>
 
@@ -44,6 +45,35 @@ bool improve(const ControlProblem<Scalar>& problem, const Values<Scalar>& v, Sca
     }
   }
   return changed;
+}
+
+/// Evaluation is only as good as the rounding of the linear solve; a few plain sweeps bring it to the target.
+template <class Scalar>
+CertifiedSolution<Scalar> iterate_inexact_policies(const ControlProblem<Scalar>& problem,
+                                                   const SolverOptions& options) {
+  const MacQueenBound<Scalar> bound(problem.mdp());
+  const Scalar target = bound.target(options);
+  Values<Scalar> v = Values<Scalar>::Zero(problem.mdp().states()), tv;
+  Policy policy;
+  problem.sweep(v, tv, policy, options.tie);
+  long sweeps = 1;
+  // Improvement ends after a handful of solves; the limit is for a solve so inexact that it would go round in circles.
+  constexpr long most_solves = 1000;
+  do {
+    if (sweeps >= options.max_sweeps) give_up("policy iteration", sweeps, INFINITY, target);
+    v = solve_policy_values(problem.mdp(), policy);
+    ++sweeps;
+  } while (sweeps <= most_solves && improve(problem, v, improvement_margin(bound, v), policy));
+  for (long polish = 0; polish < 1000 && sweeps < options.max_sweeps; ++polish, ++sweeps) {
+    problem.sweep(v, tv, policy, options.tie);
+    const auto interval = bound(v, tv);
+    if (interval.error <= target) {
+      tv.array() += interval.shift;
+      return finish(problem, bound, std::move(tv), std::move(policy), interval.error, sweeps);
+    }
+    v.swap(tv);
+  }
+  give_up("policy iteration", sweeps, bound(v, tv).error, target);
 }
 
 }  // namespace
@@ -87,35 +117,17 @@ CertifiedSolution<Scalar> iterate_values(const ControlProblem<Scalar>& problem, 
 
 template <class Scalar>
 CertifiedSolution<Scalar> iterate_policies(const ControlProblem<Scalar>& problem, const SolverOptions& options) {
-  const MacQueenBound<Scalar> bound(problem.mdp());
-  const Scalar target = bound.target(options);
-  Values<Scalar> v = Values<Scalar>::Zero(problem.mdp().states()), tv;
-  Policy policy;
-  problem.sweep(v, tv, policy, options.tie);
-  long sweeps = 1;
-  // Improvement ends after a handful of solves; the limit is for a solve so inexact that it would go round in circles.
-  constexpr long most_solves = 1000;
-  do {
-    if (sweeps >= options.max_sweeps) give_up("policy iteration", sweeps, INFINITY, target);
-    v = solve_policy_values(problem.mdp(), policy);
-    ++sweeps;
-  } while (sweeps <= most_solves && improve(problem, v, improvement_margin(bound, v), policy));
-  // The linear solve is only as good as its rounding; a few plain sweeps bring it to the target.
-  for (long polish = 0; polish < 1000 && sweeps < options.max_sweeps; ++polish, ++sweeps) {
-    problem.sweep(v, tv, policy, options.tie);
-    const auto interval = bound(v, tv);
-    if (interval.error <= target) {
-      tv.array() += interval.shift;
-      return finish(problem, bound, std::move(tv), std::move(policy), interval.error, sweeps);
-    }
-    v.swap(tv);
+  if constexpr (is_exact_v<Scalar>) {
+    return iterate_policies_exactly(problem, options);
+  } else {
+    return iterate_inexact_policies(problem, options);
   }
-  give_up("policy iteration", sweeps, bound(v, tv).error, target);
 }
 
 template CertifiedSolution<double> finish(const ControlProblem<double>&, const MacQueenBound<double>&, Values<double>,
                                           Policy, double, long);
 template CertifiedSolution<double> iterate_values(const ControlProblem<double>&, const SolverOptions&, long);
 template CertifiedSolution<double> iterate_policies(const ControlProblem<double>&, const SolverOptions&);
+template CertifiedSolution<Rational> iterate_policies(const ControlProblem<Rational>&, const SolverOptions&);
 
 }  // namespace maximin::internal

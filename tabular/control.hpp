@@ -46,6 +46,8 @@ class ControlProblem {
   /// Whether x is better than y for the player.
   bool better(const Scalar& x, const Scalar& y) const { return player_ == Player::maximise ? x > y : x < y; }
 
+  bool maximises() const { return player_ == Player::maximise; }
+
   /// (R + gamma P v)(s,a).
   Scalar backup(State s, Action a, const Values<Scalar>& v) const {
     return mdp_->reward(s, a) + mdp_->discount() * mdp_->expectation(s, a, v);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <maximin/tabular/control.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 namespace {
@@ -54,5 +55,8 @@ RobustEvaluation<Scalar> evaluate_against_optimal_attack(const FiniteMdp<Scalar>
 
 template RobustEvaluation<double> evaluate_against_optimal_attack(const FiniteMdp<double>&, const Perturbation<double>&,
                                                                   const Policy&, const SolverOptions&);
+template RobustEvaluation<Rational> evaluate_against_optimal_attack(const FiniteMdp<Rational>&,
+                                                                    const Perturbation<Rational>&, const Policy&,
+                                                                    const SolverOptions&);
 
 }  // namespace maximin

@@ -8,6 +8,7 @@
 #include <Eigen/SparseLU>
 
 #include <maximin/tabular/control.hpp>
+#include <maximin/tabular/exact_control.hpp>
 
 namespace maximin {
 namespace {
@@ -74,10 +75,14 @@ ControlProblem<Scalar> only(const FiniteMdp<Scalar>& mdp, const Policy& action) 
 
 template <class Scalar>
 Values<Scalar> solve_policy_values(const FiniteMdp<Scalar>& mdp, const Policy& action) {
-  const auto n = static_cast<std::size_t>(mdp.states());
-  const bool full = nonzeros(mdp, action) > n * n / 8;
-  return mdp.states() <= small || (full && mdp.states() <= large) ? solve_dense(mdp, action)
-                                                                  : solve_sparse(mdp, action);
+  if constexpr (is_exact_v<Scalar>) {
+    return internal::solve_policy_values_exactly(mdp, action);
+  } else {
+    const auto n = static_cast<std::size_t>(mdp.states());
+    const bool full = nonzeros(mdp, action) > n * n / 8;
+    return mdp.states() <= small || (full && mdp.states() <= large) ? solve_dense(mdp, action)
+                                                                    : solve_sparse(mdp, action);
+  }
 }
 
 template <class Scalar>
@@ -93,7 +98,9 @@ CertifiedSolution<Scalar> evaluate_policy_iteratively(const FiniteMdp<Scalar>& m
 }
 
 template Values<double> solve_policy_values(const FiniteMdp<double>&, const Policy&);
+template Values<Rational> solve_policy_values(const FiniteMdp<Rational>&, const Policy&);
 template CertifiedSolution<double> evaluate_policy(const FiniteMdp<double>&, const Policy&, const SolverOptions&);
+template CertifiedSolution<Rational> evaluate_policy(const FiniteMdp<Rational>&, const Policy&, const SolverOptions&);
 template CertifiedSolution<double> evaluate_policy_iteratively(const FiniteMdp<double>&, const Policy&,
                                                                const SolverOptions&);
 

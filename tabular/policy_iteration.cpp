@@ -1,6 +1,7 @@
 #include <maximin/tabular/policy_iteration.hpp>
 
 #include <maximin/tabular/control.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -17,6 +18,7 @@ CertifiedSolution<Scalar> modified_policy_iteration(const FiniteMdp<Scalar>& mdp
 }
 
 template CertifiedSolution<double> policy_iteration(const FiniteMdp<double>&, const SolverOptions&);
+template CertifiedSolution<Rational> policy_iteration(const FiniteMdp<Rational>&, const SolverOptions&);
 template CertifiedSolution<double> modified_policy_iteration(const FiniteMdp<double>&, const SolverOptions&, long);
 
 }  // namespace maximin

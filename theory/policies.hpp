@@ -56,10 +56,10 @@ requires Aggregator<Agg, Scalar> Action belief_action(const QTable<Scalar>& q, s
 }
 
 /// pi(t) = argmax_a min_{m in B(t)} q(m,a) for every observation t (paper, Algorithm 1 line 5 and Algorithm 3), or with
-/// another aggregator in the place of min.
-template <class Scalar, class Agg = MinAggregator>
+/// another aggregator in the place of min. Values and distances may be of different scalars.
+template <class Scalar, class Distance, class Agg = MinAggregator>
 requires Aggregator<Agg, Scalar>
-void maximin_policy(const QTable<Scalar>& q, const Perturbation<Scalar>& perturbation, Policy& out,
+void maximin_policy(const QTable<Scalar>& q, const Perturbation<Distance>& perturbation, Policy& out,
                     std::vector<Scalar>& scratch, const Agg& aggregate = {}, TieBreak tie = TieBreak::lowest_index) {
   out.resize(static_cast<std::size_t>(q.rows()));
   for (State t = 0; t < q.rows(); ++t) {
@@ -69,8 +69,8 @@ void maximin_policy(const QTable<Scalar>& q, const Perturbation<Scalar>& perturb
 
 /// omega_pi(s) = argmin_{t in B(s)} q(s, pi(t)) for every true state s: the attacker's best response to pi, judged by q
 /// (paper, Algorithm 1 line 6).
-template <class Scalar>
-void best_response_attack(const QTable<Scalar>& q, const Policy& policy, const Perturbation<Scalar>& perturbation,
+template <class Scalar, class Distance>
+void best_response_attack(const QTable<Scalar>& q, const Policy& policy, const Perturbation<Distance>& perturbation,
                           AttackPolicy& out, TieBreak tie = TieBreak::lowest_index) {
   out.resize(static_cast<std::size_t>(q.rows()));
   for (State s = 0; s < q.rows(); ++s) {

@@ -9,6 +9,7 @@
 #include <maximin/models/builtin_models.hpp>
 #include <maximin/models/files/model_file.hpp>
 #include <maximin/models/nearest_name.hpp>
+#include <maximin/models/rationalise.hpp>
 
 namespace maximin::apps {
 
@@ -63,12 +64,13 @@ std::string wrapped(const std::vector<std::string>& words) {
   return text;
 }
 
-Model<double> load_file(const ModelOptions& options) {
+template <class Scalar>
+Model<Scalar> load_file(const ModelOptions& options) {
   ReadOptions reading;
   reading.discount = options.discount;
   reading.reward_model = options.reward_model;
   if (options.intervals == "nominal") reading.intervals = IntervalRows::nominal;
-  return load_model<double>(options.file, reading);
+  return load_model<Scalar>(options.file, reading);
 }
 
 Model<double> load_example(const ModelOptions& options) {
@@ -101,17 +103,34 @@ void declare(CLI::App& app, ModelOptions& options) {
   declare_geometry(app, options);
 }
 
-Model<double> load(const ModelOptions& options) {
+namespace {
+
+void refuse_none_and_both(const ModelOptions& options) {
   if (!options.given()) throw InputError("no model given, expected a model file or --example NAME");
   if (!options.file.empty() && !options.example.empty())
     throw InputError("--example: given beside a model file, expected one of the two");
-  Model<double> model = options.example.empty() ? load_file(options) : load_example(options);
+}
+
+template <class Scalar>
+Model<Scalar> with_remarks(Model<Scalar> model) {
   for (const std::string& line : model.notes) remark(line);
   return model;
 }
 
-std::string title(const Model<double>& model, const ModelOptions& options) {
-  if (!model.name.empty()) return model.name;
+}  // namespace
+
+Model<double> load(const ModelOptions& options) {
+  refuse_none_and_both(options);
+  return with_remarks(options.example.empty() ? load_file<double>(options) : load_example(options));
+}
+
+Model<Rational> load_exactly(const ModelOptions& options) {
+  refuse_none_and_both(options);
+  return with_remarks(options.example.empty() ? load_file<Rational>(options) : rationalise(load_example(options)));
+}
+
+std::string title(const std::string& name, const ModelOptions& options) {
+  if (!name.empty()) return name;
   if (!options.example.empty()) return options.example;
   return std::filesystem::path(options.file).filename().string();
 }

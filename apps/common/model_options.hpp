@@ -7,6 +7,7 @@
 #include <maximin/models/make_perturbation.hpp>
 #include <maximin/models/model.hpp>
 #include <maximin/theory/perturbation.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin::apps {
 
@@ -33,8 +34,12 @@ void declare(CLI::App& app, ModelOptions& options);
 /// standard error. Throws InputError when neither or both are given, and as `load_model`.
 Model<double> load(const ModelOptions& options);
 
-/// What to call the model: its own name, else that of the example or the file.
-std::string title(const Model<double>& model, const ModelOptions& options);
+/// The same in exact arithmetic: the numbers of a file as they stand there; those of an example, and those of the
+/// command line, as the decimals that they are.
+Model<Rational> load_exactly(const ModelOptions& options);
+
+/// What to call a model: its own name, if it is not empty, else that of the example or the file.
+std::string title(const std::string& name, const ModelOptions& options);
 
 /// What the command line says of the geometry.
 GeometryOverrides<double> geometry_overrides(const ModelOptions& options);

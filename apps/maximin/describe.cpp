@@ -95,7 +95,7 @@ Problem load_problem(const ModelOptions& options) {
   Model<double> model = load(options);
   const auto kind = resolve_geometry(model, geometry_overrides(options)).kind;
   Perturbation<double> perturbation = make_perturbation(model, options);
-  std::string name = title(model, options);
+  std::string name = title(model.name, options);
   return {std::move(model), std::move(name), kind, std::move(perturbation)};
 }
 

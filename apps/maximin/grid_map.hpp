@@ -37,11 +37,14 @@ class GridMap {
 
  private:
   GridMap(int columns, int rows) : columns_(columns), rows_(rows) {
-    cells_.assign(static_cast<std::size_t>(columns * rows), -1);
+    cells_.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), -1);
   }
 
-  State& cell(int x, int y) { return cells_[static_cast<std::size_t>(y * columns_ + x)]; }
-  State cell(int x, int y) const { return cells_[static_cast<std::size_t>(y * columns_ + x)]; }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+  }
+  State& cell(int x, int y) { return cells_[index(x, y)]; }
+  State cell(int x, int y) const { return cells_[index(x, y)]; }
 
   int columns_;
   int rows_;

@@ -109,7 +109,7 @@ int solve_plain(const SolveOptions& options) {
     print(json_text(solution_json(options, model, optimal)));
     return ExitCode::success;
   }
-  print(model_line(model, title(model, options.model)));
+  print(model_line(model, title(model.name, options.model)));
   print(fmt::format("V* from the start: {}, by {}, certified to {}.\n\n",
                     number(start_mean(model, optimal.v), optimal.error), options.method, error_number(optimal.error)));
   print(optimal_text(model, optimal, options.output.rows()));

@@ -5,6 +5,7 @@
 #include <maximin/proofs_check/verdict_text.hpp>
 
 #include "campaign_command.hpp"
+#include "certify_command.hpp"
 #include "model_command.hpp"
 #include "options.hpp"
 
@@ -23,6 +24,12 @@ constexpr const char* examples = R"(Examples:
 
 Exit codes: 0 holds, 1 a claim is violated, 2 bad usage or input, 3 undetermined, 4 an assumption of a claim fails)";
 
+constexpr const char* certify_examples =
+    R"(The certificate holds everything that a sceptic needs (docs/certificate-format.md); check_certificate verifies it.
+Examples:
+  verify_bound certify --example one-sided --reading paper -o refuted.json
+  verify_bound certify lake.json --metric hops --eps 1 --discount 0.95 -o lake.cert.json)";
+
 int run(int argc, char** argv) {
   using namespace maximin;
   CLI::App program(
@@ -32,7 +39,12 @@ int run(int argc, char** argv) {
   program.footer(examples);
   verify_bound::Options options;
   verify_bound::declare(program, options);
+  verify_bound::CertifyCommand certify;
+  CLI::App* certify_command = program.add_subcommand("certify", "prove the claims on one model, in exact arithmetic");
+  certify_command->footer(certify_examples);
+  verify_bound::declare(*certify_command, certify);
   return apps::run_program(program, argc, argv, [&]() -> int {
+    if (certify_command->parsed()) return verify_bound::run_certify_command(certify);
     if (options.explain) {
       apps::print(claims_text());
       return apps::ExitCode::success;

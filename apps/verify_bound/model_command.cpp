@@ -31,7 +31,7 @@ int run_model_command(const Options& options) {
     json["record"] = to_json(record);
     apps::print(apps::json_text(json));
   } else {
-    const std::string title = apps::printable(apps::title(model, options.model));
+    const std::string title = apps::printable(apps::title(model.name, options.model));
     apps::print(verdict_text(title, model, record.found, examination_options(options).reading));
   }
   return exit_code(outcome(record.found));

@@ -181,15 +181,10 @@ void check_combination(const CLI::App& program, const Options& o) {
       where, "it with random models only");
 }
 
-ExaminationOptions examination_options(const Options& o) {
-  ExaminationOptions e;
-  e.reading = o.reading == "paper" ? Reading::paper : Reading::corrected;
-  e.tie = o.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
-  e.max_iterations = o.max_iterations;
-  e.max_belief_positions = o.max_positions;
-  e.max_period = o.max_period;
-  if (!o.claims.empty()) e.only.emplace();
-  for (const std::string& name : o.claims) {
+std::optional<std::set<ClaimId>> claims_named(const std::vector<std::string>& names) {
+  if (names.empty()) return std::nullopt;
+  std::set<ClaimId> ids;
+  for (const std::string& name : names) {
     const auto id = find_claim(name);
     if (!id) {
       throw InputError(
@@ -197,8 +192,19 @@ ExaminationOptions examination_options(const Options& o) {
                       "B, C, D, E or F",
                       name));
     }
-    e.only->insert(*id);
+    ids.insert(*id);
   }
+  return ids;
+}
+
+ExaminationOptions examination_options(const Options& o) {
+  ExaminationOptions e;
+  e.reading = o.reading == "paper" ? Reading::paper : Reading::corrected;
+  e.tie = o.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
+  e.max_iterations = o.max_iterations;
+  e.max_belief_positions = o.max_positions;
+  e.max_period = o.max_period;
+  e.only = claims_named(o.claims);
   return e;
 }
 

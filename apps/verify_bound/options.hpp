@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,9 @@ void declare(CLI::App& program, Options& options);
 /// Refuses options that would be ignored: those of model files on random models, and the other way round. Throws
 /// InputError naming both.
 void check_combination(const CLI::App& program, const Options& options);
+
+/// The claims of --claims; nothing for all. Throws InputError on a name that is none.
+std::optional<std::set<ClaimId>> claims_named(const std::vector<std::string>& names);
 
 /// What to examine on each model. Throws InputError on an unknown claim.
 ExaminationOptions examination_options(const Options& options);

@@ -8,6 +8,7 @@
 #include <maximin/models/files/internal/cassandra_rewards.hpp>
 #include <maximin/models/files/internal/model_assembly.hpp>
 #include <maximin/models/files/internal/sparse_rows.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -356,5 +357,6 @@ Model<Scalar> read_cassandra(std::string_view text, std::string_view file_name, 
 }
 
 template Model<double> read_cassandra(std::string_view, std::string_view, const ReadOptions&);
+template Model<Rational> read_cassandra(std::string_view, std::string_view, const ReadOptions&);
 
 }  // namespace maximin

@@ -8,6 +8,7 @@
 
 #include <maximin/models/files/internal/choice_table.hpp>
 #include <maximin/models/files/internal/text_lines.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -167,6 +168,7 @@ void write_csv(const Model<Scalar>& model, std::ostream& out) {
 }
 
 template Model<double> read_csv(std::string_view, std::string_view, const ReadOptions&);
+template Model<Rational> read_csv(std::string_view, std::string_view, const ReadOptions&);
 template void write_csv(const Model<double>&, std::ostream&);
 
 }  // namespace maximin

@@ -7,6 +7,7 @@
 
 #include <maximin/models/files/internal/choice_table.hpp>
 #include <maximin/models/files/internal/text_lines.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -312,6 +313,7 @@ void write_drn(const Model<Scalar>& model, std::ostream& out) {
 }
 
 template Model<double> read_drn(std::string_view, std::string_view, const ReadOptions&);
+template Model<Rational> read_drn(std::string_view, std::string_view, const ReadOptions&);
 template void write_drn(const Model<double>&, std::ostream&);
 
 }  // namespace maximin

@@ -6,6 +6,7 @@
 
 #include <maximin/models/files/internal/json_document.hpp>
 #include <maximin/models/files/internal/model_assembly.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -156,6 +157,7 @@ Model<Scalar> read_gymnasium_json(const JsonDocument& document, const ReadOption
 }
 
 template Model<double> read_gymnasium_json(const JsonDocument&, const ReadOptions&);
+template Model<Rational> read_gymnasium_json(const JsonDocument&, const ReadOptions&);
 
 }  // namespace internal
 
@@ -166,5 +168,6 @@ Model<Scalar> read_gymnasium_json(std::string_view text, std::string_view file_n
 }
 
 template Model<double> read_gymnasium_json(std::string_view, std::string_view, const ReadOptions&);
+template Model<Rational> read_gymnasium_json(std::string_view, std::string_view, const ReadOptions&);
 
 }  // namespace maximin

@@ -7,6 +7,7 @@
 
 #include <maximin/models/files/internal/json_document.hpp>
 #include <maximin/models/files/internal/model_assembly.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -301,6 +302,7 @@ Model<Scalar> read_maximin_json(const JsonDocument& document, const ReadOptions&
 }
 
 template Model<double> read_maximin_json(const JsonDocument&, const ReadOptions&);
+template Model<Rational> read_maximin_json(const JsonDocument&, const ReadOptions&);
 
 }  // namespace internal
 
@@ -311,5 +313,6 @@ Model<Scalar> read_maximin_json(std::string_view text, std::string_view file_nam
 }
 
 template Model<double> read_maximin_json(std::string_view, std::string_view, const ReadOptions&);
+template Model<Rational> read_maximin_json(std::string_view, std::string_view, const ReadOptions&);
 
 }  // namespace maximin

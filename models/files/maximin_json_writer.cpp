@@ -3,6 +3,7 @@
 #include <maximin/models/files/internal/json_document.hpp>
 #include <maximin/models/files/internal/number.hpp>
 #include <maximin/models/files/maximin_json.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -119,5 +120,6 @@ void write_maximin_json(const Model<Scalar>& model, std::ostream& out) {
 }
 
 template void write_maximin_json(const Model<double>&, std::ostream&);
+template void write_maximin_json(const Model<Rational>&, std::ostream&);
 
 }  // namespace maximin

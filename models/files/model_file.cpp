@@ -15,6 +15,7 @@
 #include <maximin/models/files/maximin_json.hpp>
 #include <maximin/models/files/prism_explicit.hpp>
 #include <maximin/models/files/umb.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -106,5 +107,6 @@ Model<Scalar> load_model(const std::filesystem::path& path, const ReadOptions& o
 }
 
 template Model<double> load_model(const std::filesystem::path&, const ReadOptions&);
+template Model<Rational> load_model(const std::filesystem::path&, const ReadOptions&);
 
 }  // namespace maximin

@@ -8,6 +8,7 @@
 #include <maximin/models/files/internal/choice_table.hpp>
 #include <maximin/models/files/internal/prism_companions.hpp>
 #include <maximin/models/files/internal/text_lines.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -277,7 +278,11 @@ Model<Scalar> read_prism_explicit_at(std::string_view text, const std::filesyste
 
 template Model<double> read_prism_explicit(std::string_view, std::string_view, const ReadOptions&,
                                            const PrismCompanions&);
+template Model<Rational> read_prism_explicit(std::string_view, std::string_view, const ReadOptions&,
+                                             const PrismCompanions&);
 template Model<double> read_prism_explicit_at(std::string_view, const std::filesystem::path&, const ReadOptions&);
+template Model<Rational> read_prism_explicit_at(std::string_view, const std::filesystem::path&, const ReadOptions&);
 template Model<double> load_prism_explicit(const std::filesystem::path&, const ReadOptions&);
+template Model<Rational> load_prism_explicit(const std::filesystem::path&, const ReadOptions&);
 
 }  // namespace maximin

@@ -13,6 +13,7 @@
 #include <maximin/models/files/internal/gzip.hpp>
 #include <maximin/models/files/internal/json_document.hpp>
 #include <maximin/models/files/internal/ustar.hpp>
+#include <maximin/theory/rational.hpp>
 
 namespace maximin {
 
@@ -321,5 +322,6 @@ Model<Scalar> read_umb(std::string_view bytes, std::string_view file_name, const
 }
 
 template Model<double> read_umb(std::string_view, std::string_view, const ReadOptions&);
+template Model<Rational> read_umb(std::string_view, std::string_view, const ReadOptions&);
 
 }  // namespace maximin

@@ -1,0 +1,155 @@
+#include "certify_command.hpp"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <maximin/apps/common/interrupt.hpp>
+#include <maximin/apps/common/json_output.hpp>
+#include <maximin/apps/common/option_checks.hpp>
+#include <maximin/apps/common/output_file.hpp>
+#include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/table.hpp>
+#include <maximin/models/rationalise.hpp>
+#include <maximin/proofs_check/trial_record.hpp>
+
+#include "options.hpp"
+#include "outcome.hpp"
+
+namespace maximin::verify_bound {
+namespace {
+
+/// x in six digits, and exactly where that is as short.
+std::string shown(const Rational& x) {
+  const std::string exact = x.str();
+  const std::string rounded = apps::number(static_cast<double>(x));
+  return exact == rounded || exact.size() > 14 ? rounded : fmt::format("{} = {}", rounded, exact);
+}
+
+std::string limit_text(const Certificate& c) {
+  const auto rounds = c.rounds.size();
+  if (!c.limit) return fmt::format("Q_n: undetermined after {} exact rounds (--max-rounds, --max-period)", rounds);
+  const std::string ties = c.limit->all_attained() ? "" : "; choices tie on it that lead to the same backups";
+  return c.limit->period == 1
+             ? fmt::format("Q_n: settles, proved from n = {} on{}", rounds, ties)
+             : fmt::format("Q_n: cycles with period {}, proved from n = {} on{}", c.limit->period, rounds, ties);
+}
+
+std::string verdicts_text(const Certificate& c) {
+  apps::Table table;
+  table.column("claim", apps::Align::left).column("", apps::Align::left).column("verdict", apps::Align::left);
+  table.column("left", apps::Align::left).column("right", apps::Align::left);
+  for (const CertifiedClaim& v : c.claims) {
+    const Claim& about = claim(v.id);
+    if (v.verdict == Verdict::undetermined) {
+      table.row({std::string(about.name), std::string(about.title), "undetermined", "", ""});
+    } else {
+      table.row({std::string(about.name), std::string(about.title), std::string(to_string(v.verdict)), shown(v.left),
+                 "<= " + shown(v.right)});
+    }
+  }
+  return table.text();
+}
+
+Outcome outcome_of(const Certificate& c) {
+  if (c.any(Verdict::violated)) return Outcome::violated;
+  return c.any(Verdict::undetermined) ? Outcome::undetermined : Outcome::holds;
+}
+
+std::string conclusion(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::violated:
+      return "VIOLATED, and that is proved: a claim above fails on this model.\n";
+    case Outcome::undetermined:
+      return "UNDETERMINED: what holds above is proved; a claim is open.\n";
+    default:
+      return "HOLDS, proved in exact arithmetic for this model.\n";
+  }
+}
+
+nlohmann::ordered_json summary_json(const CertifyCommand& options, const Certificate& c, Outcome outcome) {
+  nlohmann::ordered_json json{{"format", "maximin-certify"}, {"version", 1}, {"maximin", MAXIMIN_VERSION}};
+  json["certificate"] = options.output;
+  json["rounds"] = c.rounds.size();
+  json["period"] = c.limit ? nlohmann::ordered_json(c.limit->period) : nlohmann::ordered_json(nullptr);
+  for (const CertifiedClaim& v : c.claims) {
+    auto& entry = json["claims"][std::string(claim(v.id).name)];
+    entry["verdict"] = to_string(v.verdict);
+    if (v.verdict == Verdict::undetermined) continue;
+    entry["left"] = v.left.str();
+    entry["right"] = v.right.str();
+  }
+  json["exit_code"] = exit_code(outcome);
+  return json;
+}
+
+GeometryOverrides<Rational> overrides_of(const apps::ModelOptions& options) {
+  const GeometryOverrides<double> asked = apps::geometry_overrides(options);
+  GeometryOverrides<Rational> overrides;
+  if (asked.kind) overrides.kind = static_cast<Geometry<Rational>::Kind>(*asked.kind);
+  overrides.norm = asked.norm;
+  if (asked.eps) overrides.eps = decimal(*asked.eps);
+  return overrides;
+}
+
+}  // namespace
+
+void declare(CLI::App& command, CertifyCommand& o) {
+  apps::declare(command, o.model);
+  const std::string group = "Proof";
+  command.add_option("-o,--output", o.output, "write the certificate to this file")
+      ->required()
+      ->type_name("FILE")
+      ->group(group);
+  command.add_flag("--force", o.force, "replace the file if it exists")->group(group);
+  command.add_option("--reading", o.reading, "R_max as the paper prints it, or corrected (the default)")
+      ->check(apps::one_of({"paper", "corrected"}))
+      ->type_name("WORD")
+      ->group(group);
+  command.add_option("--tie", o.tie, "which index wins among equals: lowest (the default) or highest")
+      ->check(apps::one_of({"lowest", "highest"}))
+      ->type_name("WORD")
+      ->group(group);
+  command.add_option("--claims", o.claims, "claims to prove, separated by commas (default: all)")
+      ->delimiter(',')
+      ->type_name("LIST")
+      ->group(group);
+  const auto budget = [&](const char* name, long& value, long most, const char* description) {
+    command.add_option(name, value, fmt::format("{} (default: {})", description, value))
+        ->check(apps::whole_number(1, most))
+        ->type_name("N")
+        ->group(group);
+  };
+  budget("--max-rounds", o.budgets.max_rounds, 10'000'000, "exact rounds before the limit is undetermined");
+  budget("--max-period", o.budgets.max_period, 10'000, "longest cycle that is looked for");
+  budget("--max-positions", o.budgets.max_positions, 10'000'000, "(state, belief) pairs before F is undetermined");
+  command.add_flag("--json", o.json, "one JSON object on standard output, nothing else")->group(group);
+}
+
+int run_certify_command(const CertifyCommand& options) {
+  CertifyOptions asked = options.budgets;
+  asked.reading = options.reading == "paper" ? Reading::paper : Reading::corrected;
+  asked.tie = options.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
+  asked.only = claims_named(options.claims);
+  asked.stop = &apps::stop_on_interrupt();
+  const auto overwrite = options.force ? apps::Overwrite::replace : apps::Overwrite::refuse;
+  if (!options.force && std::filesystem::exists(options.output)) {
+    throw InputError(fmt::format("--output: {} exists, expected a new name or --force", options.output));
+  }
+  const Model<Rational> model = apps::load_exactly(options.model);
+  const Certificate certificate = certify(model, overrides_of(options.model), asked);
+  apps::write_file(options.output, certificate_json(certificate), overwrite);
+  const Outcome outcome = outcome_of(certificate);
+  if (options.json) {
+    apps::print(apps::json_text(summary_json(options, certificate, outcome)));
+  } else {
+    apps::print(fmt::format("{}: {} states, {} actions; certificate in {}\n{}\n\n{}\n{}",
+                            apps::printable(apps::title(model.name, options.model)), model.mdp.states(),
+                            model.mdp.actions(), options.output, limit_text(certificate), verdicts_text(certificate),
+                            conclusion(outcome)));
+  }
+  return exit_code(outcome);
+}
+
+}  // namespace maximin::verify_bound

@@ -1,0 +1,399 @@
+"""Tests proofs_check/check_certificate.py: it accepts what is true, and nothing that is false.
+
+The certificates come from reference_certificates.py. Every leaf of each is changed in several ways; a mutant that is accepted
+must be true, which is decided by making the certificate of the mutant's own model anew (`why_true`), and for one of the few
+reasons that are listed in ALLOWED.
+
+    check_certificate_test.py [unittest arguments]     MUTANTS=all tries all changes of every place (minutes), not one or two
+"""
+
+import contextlib
+import io
+import json
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from fractions import Fraction
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+CHECKER = os.path.join(HERE, "..", "..", "proofs_check", "check_certificate.py")
+sys.path[:0] = [HERE, os.path.dirname(CHECKER)]
+import check_certificate as checker  # noqa: E402
+import reference_certificates as reference  # noqa: E402
+
+# The verdicts in the order of the table: lemma-1, lemma-1-iterates, lemma-2, lemma-3, theorem-1, A, B, C, D, E, F.
+EXPECTED = {
+    "one_sided_corrected": "hhhhhhhhhhh", "one_sided_paper": "vhvhvhhhhhh", "cycle": "hhhhhhhhhhh", "cycle_ties": "uhhhhhhhhhh",
+    "cycle_ties_highest": "uhhhhhhhhhh", "chain_l1": "hhhhhhhhhhh", "plane_l2": "hhhhhhhhhhh", "islands": "hhhhhhhhhhh",
+    "eps_zero": "hhuhhhhhhhh", "one_state": "hhuhhhhhhhh", "tied_lowest": "hhhhhhhhhhh", "tied_highest": "hhhhhhhhhhh",
+    "negative": "hhhhhhhhhhh", "negative_paper": "vhhhhhhhhhh", "mirror": "hhhhhhhhhhh", "twins": "huhhhhhhhhh",
+    "twins_tie": "uuuhuuuuuhh", "discount_zero": "huhhhhhhhhh", "undecided": "uuuhuuuuuhu", "lower_bound": "hhhhhhhhhhh",
+    "random_six": "hhhhhhhhhhh"}
+
+CLAIMS = ["lemma-1", "lemma-1-iterates", "lemma-2", "lemma-3", "theorem-1", "A", "B", "C", "D", "E", "F"]
+WORDS = ["l1", "l2", "linf", "corrected", "paper", "lowest", "highest", "holds", "violated", "undetermined", "lemma-1", "A", "F"]
+
+# Why an accepted mutant may be true.
+ALLOWED = {
+    "another place that attains the same constant",
+    "another instance of the same sides",
+    "another radius or number of rounds for which everything else is the same",
+    "a lower bound is claimed where the values are exact",
+    "other lower bounds of the values of the game",
+    "less is claimed",
+    "of another model, reading or tie, with the same consequences",
+}
+
+REFERENCE = reference.reference()
+
+if hasattr(sys, "set_int_max_str_digits"):
+    sys.set_int_max_str_digits(0)
+
+
+def check(document):
+    """The rows that the checker prints, or the text of its refusal."""
+    try:
+        return checker.check_certificate(checker.Node(document))
+    except checker.NotACertificate as error:
+        return str(error)
+
+
+def model_of(document):
+    """The reference model of a certificate that the checker accepted."""
+    d = document["model"]
+    rows = [[{} for _ in range(d["actions"])] for _ in range(d["states"])]
+    for s, a, t, p in d["transitions"]:
+        rows[s][a][t] = Fraction(p)
+    return reference.Model(d["discount"], d["eps"], d["rewards"], rows, d.get("points"), d.get("norm"), d.get("distances"))
+
+
+def attains(document, name):
+    """Whether constants.NAME.at is a place of the stated value."""
+    model, entry = model_of(document), document["constants"][name]
+    s, t, a, *u = entry["at"]
+    jumps = [abs(model.P[s][a].get(x, 0) - model.P[t][a].get(x, 0)) for x in model.S]
+    Q = model.back([Fraction(x) for x in document["optimal"]])
+    found = {"l_r": abs(model.R[s][a] - model.R[t][a]), "l_star": abs(Q[s][a] - Q[t][a]), "k": Fraction(sum(jumps)) / 2,
+             "l_p": jumps[u[0]] if u else None}[name]
+    return s < t and found / model.high[s][t] == Fraction(entry["value"])
+
+
+def why_true(document, original):
+    """The reason, one of ALLOWED, why an accepted mutant is true; else what is false."""
+    game, limit = document["belief_game"], document["limit"]
+    slack = Fraction(0)
+    if game and not game["exact"] and original["belief_game"] and not original["belief_game"]["exact"]:
+        slack = Fraction(1, 8)  # that of the reference certificate lower_bound
+    options = {"reading": document["reading"], "tie": document["tie"], "rounds": len(document["rounds"]), "with_beliefs": bool(game),
+               "with_limit": bool(limit), "radius": limit and Fraction(limit["radius"]), "belief_slack": slack}
+    try:
+        truth, instances = reference.examine(model_of(document), **options)
+    except ValueError as error:
+        return f"FALSE: {error}"
+    reasons = set()
+    for name in document:
+        if name == "constants":
+            for key, entry in document[name].items():
+                expected = truth[name][key]
+                if entry != expected:
+                    if entry["value"] != expected["value"] or not attains(document, key):
+                        return f"FALSE: constants.{key}"
+                    reasons.add("another place that attains the same constant")
+        elif name == "belief_game" and game and not game["exact"] and truth[name]["exact"]:
+            if dict(game, exact=True) != truth[name]:
+                return "FALSE: belief_game"
+            reasons.add("a lower bound is claimed where the values are exact")
+        elif name == "claims":
+            stated = [claim["claim"] for claim in document[name]]
+            if not stated or stated != [claim for claim in CLAIMS if claim in stated]:
+                return "FALSE: claims"
+            if stated != CLAIMS:
+                reasons.add("less is claimed")
+            for claim in document[name]:
+                expected = truth[name][CLAIMS.index(claim["claim"])]
+                if claim == expected:
+                    continue
+                if claim["verdict"] == "undetermined":
+                    reasons.add("less is claimed")
+                    continue
+                sides = (Fraction(claim["left"]), Fraction(claim["right"]))
+                least = instances[claim["claim"]][0]
+                found = [x for x in instances[claim["claim"]] if x[0] == claim["at"] and x[1:3] == sides]
+                if claim["verdict"] != expected["verdict"] or not found or sides[1] - sides[0] != least[2] - least[1]:
+                    return f"FALSE: claim {claim['claim']}"
+                reasons.add("another instance of the same sides")
+        elif name == "belief_game" and game and not game["exact"] and dict(game, values=0) == dict(truth[name], values=0):
+            exact = reference.examine(model_of(document), **dict(options, belief_slack=Fraction(0)))[0][name]["values"]
+            if any(Fraction(low) > Fraction(value) for low, value in zip(game["values"], exact)):
+                return "FALSE: values above those of the game"
+            if game != truth[name]:
+                reasons.add("other lower bounds of the values of the game")
+        elif document[name] != truth[name]:
+            return f"FALSE: {name}"
+    if document["model"] != original["model"] or any(document[x] != original[x] for x in ("reading", "tie")):
+        reasons.add("of another model, reading or tie, with the same consequences")
+    if document["rounds"] != original["rounds"] or (limit and limit["radius"] != original["limit"]["radius"]):
+        reasons.add("another radius or number of rounds for which everything else is the same")
+    return min(reasons) if reasons else "FALSE: nothing was changed"
+
+
+def number_mutants(text, rng):
+    x = Fraction(text)
+    yield from (str(x + 1), str(-x), str(x / 2), str(x + Fraction(1, 10**6)))
+    digits = [i for i, character in enumerate(text) if character.isdigit()]
+    at = rng.choice(digits)
+    yield text[:at] + str((int(text[at]) + rng.randrange(1, 10)) % 10) + text[at + 1:]
+    yield rng.choice([text + "0", text + "/1", "+" + text, " " + text, text + ".0", text + "e0", "0" + text, "-0", "", "1/0", "2/4", "NaN",
+                      "1e999", "\u0661", text + "\n"])
+    yield rng.choice([None, True, 0, 1.5, [text], {}])
+
+
+def leaf_mutants(value, rng):
+    if isinstance(value, str):
+        yield from number_mutants(value, rng) if re.fullmatch("-?[0-9]+(/[0-9]+)?", value) else WORDS
+        yield value + "x"
+    elif isinstance(value, bool):
+        yield from (not value, int(value), str(value))
+    elif isinstance(value, int):
+        yield from (value + 1, value - 1, -value - 1, value + 10**18, float(value), str(value), bool(value))
+    elif value is None:
+        yield from ("0", [], {}, False)
+
+
+def container_mutants(value):
+    if isinstance(value, dict):
+        yield dict(value, extra=1)
+        for name in value:
+            yield {key: item for key, item in value.items() if key != name}
+        yield list(value.values())
+    elif isinstance(value, list) and value:
+        yield value[:-1]
+        yield value + [value[-1]]
+        if value[::-1] != value:
+            yield value[::-1]
+            yield value[1:2] + value[:1] + value[2:]
+        yield {}
+    yield None
+
+
+def mutants(document, rng, most):
+    """(place, change, mutant) for at most so many changes of every leaf, object and array; undone when the next is asked for."""
+    # The holder stands for what contains the certificate, so that it is changed as a whole as well.
+    holder = [document]
+    todo = [(holder, 0, "$")]
+    while todo:
+        parent, key, place = todo.pop()
+        value = parent[key]
+        if isinstance(value, (dict, list)):
+            items = value.items() if isinstance(value, dict) else enumerate(value)
+            todo += [(value, name, f"{place}.{name}" if isinstance(value, dict) else f"{place}[{name}]") for name, _ in items]
+            changes = container_mutants(value)
+        else:
+            changes = leaf_mutants(value, rng)
+        if place.startswith("$.claims[") and place.count("[") == place.count(".") == 1 and value["verdict"] != "undetermined":
+            changes = [*changes, {"claim": value["claim"], "verdict": "undetermined"}]
+        changes = [change for change in changes if type(change) is not type(value) or change != value]
+        for change in rng.sample(changes, min(most, len(changes))):
+            parent[key] = change
+            yield place, change, holder[0]
+        parent[key] = value
+
+
+class AcceptsWhatIsTrue(unittest.TestCase):
+    def test_reference_certificates_with_the_expected_verdicts(self):
+        self.assertEqual(sorted(EXPECTED), sorted(REFERENCE))
+        for name, document in REFERENCE.items():
+            rows = check(document)
+            self.assertIsInstance(rows, list, f"{name}: {rows}")
+            self.assertEqual([row[0] for row in rows], CLAIMS)
+            self.assertEqual("".join(row[1][0] for row in rows), EXPECTED[name], name)
+
+    def test_printed_bound_of_the_one_sided_model_is_violated(self):
+        theorem = check(REFERENCE["one_sided_paper"])[4]
+        self.assertEqual(theorem[:4], ("theorem-1", "violated", "10", "6"))
+
+    def test_cycle_has_period_three(self):
+        self.assertEqual(REFERENCE["cycle"]["limit"]["period"], 3)
+
+    def test_other_witnesses_of_the_same_limit(self):
+        for name, document in REFERENCE.items():
+            if not document["limit"]:
+                continue
+            model, N = model_of(document), len(document["rounds"])
+            options = {"reading": document["reading"], "tie": document["tie"]}
+            period = document["limit"]["period"]
+            variants = [{"rounds": N + period}, {"rounds": N + 1, "repeat": 1} if period == 1 else {}, {"repeat": 2},
+                        {"rounds": N + 6, "radius": Fraction(document["limit"]["radius"]) * Fraction(99, 100)}, {"with_limit": False},
+                        {"with_beliefs": False}, {"belief_slack": Fraction(1, 100)}]
+            for variant in variants:
+                other = reference.certificate(model, **options, **variant)
+                self.assertIsInstance(check(other), list, f"{name} {variant}: {check(other)}")
+
+
+class RefusesWhatIsFalse(unittest.TestCase):
+    def test_mutants(self):
+        rng, counts, wrong = random.Random(7), {"refused": 0}, []
+        for name, original in REFERENCE.items():
+            document = json.loads(json.dumps(original))
+            most = 99 if os.environ.get("MUTANTS") == "all" else 2 if len(json.dumps(original)) < 5000 else 1
+            for place, change, mutant in mutants(document, rng, most):
+                answer = check(mutant)
+                if isinstance(answer, str):
+                    counts["refused"] += 1
+                    self.assertTrue(answer.startswith("$") and "expected" in answer and "\n" not in answer, answer)
+                    continue
+                reason = why_true(mutant, original)
+                if reason not in ALLOWED:
+                    wrong.append(f"{name}: {place} -> {change!r} is accepted: {reason}")
+                counts[reason] = counts.get(reason, 0) + 1
+            self.assertEqual(document, original)
+        print(counts, file=sys.stderr)
+        self.assertEqual(wrong, [])
+        self.assertGreater(counts["refused"], 5000)
+
+    def test_violation_by_values_that_nobody_has(self):
+        """In period 2 the attacker of theorem-1 is indifferent somewhere, so `fixed` is null; elsewhere it is not the optimal attacker.
+
+        The gap of `low` is above the printed bound, that of the pairs (pi_n, om_n) is not: *violated* would be false.
+        """
+        rewards = [[0, 0], [0, 0], [0, 0], [-7, -8], [-4, 0], [-2, -4], [-8, -5],  # a cycle in which om_n is not optimal
+                   [0, 0], [0, 0], [0, 0], [0, -1], [-1, -2], [-2, -3],            # 7 prefers 0, 9 prefers 1, 8 does not care
+                   [0, -1], ["-17/200", "-217/200"]]                               # these set l_r
+        targets = [[6, 3], [4, 3], [5, 1], [5, 4], [2, 0], [1, 4], [1, 0], [10, 11], [10, 10], [12, 10], [10, 10], [11, 11], [12, 12],
+                   [13, 13], [13, 13]]
+        distances = [[0 if s == t else None for t in range(15)] for s in range(15)]
+        for s, t, d in ((0, 1, 1), (1, 2, 1), (0, 2, 2), (7, 8, 1), (8, 9, 1), (7, 9, 2), (13, 14, 2)):
+            distances[s][t] = distances[t][s] = d
+        model = reference.Model("9/10", 1, rewards, reference.sure(*targets), distances=distances)
+        document, instances = reference.examine(model, reading="paper", with_beliefs=False)
+        self.assertEqual((document["limit"]["period"], document["limit"]["fixed"]), (2, [None, None]))
+        self.assertEqual(check(document)[4][1], "undetermined")
+        at, left, right, _ = min(instances["theorem-1"], key=lambda x: x[2] - x[1])
+        self.assertGreater(left, right)
+        Q = model.back(model.extreme_value([[0, 1]] * model.n, max))
+        N = len(document["rounds"])
+        for policy, attack in reference.run(model, "lowest", N + 4)[1][N:]:
+            self.assertLess(reference.far(Q, model.back(model.value([policy[t] for t in attack]))), right)
+        document["claims"][4] = {"claim": "theorem-1", "verdict": "violated", "left": str(left), "right": str(right), "at": at}
+        self.assertIn("$.claims[4].at", check(document))
+
+    def test_values_above_the_game_and_violations_that_are_none(self):
+        document = json.loads(json.dumps(REFERENCE["lower_bound"]))
+        document["belief_game"]["values"][0] = "1000"
+        self.assertIn("$.belief_game.values", check(document))
+        document = json.loads(json.dumps(REFERENCE["one_sided_paper"]))
+        document["reading"] = "corrected"
+        self.assertIn("$.claims[0]", check(document))
+
+
+class Program(unittest.TestCase):
+    def run_on(self, *contents):
+        """Exit code, standard output and standard error for files with these contents."""
+        with tempfile.TemporaryDirectory() as folder:
+            files = []
+            for i, content in enumerate(contents):
+                files.append(os.path.join(folder, f"{i}.json"))
+                with open(files[-1], "wb") as file:
+                    file.write(content if isinstance(content, bytes) else json.dumps(content).encode())
+            done = subprocess.run([sys.executable, CHECKER] + files, capture_output=True, text=True, check=False, timeout=60)
+            return done.returncode, done.stdout, done.stderr
+
+    def refused(self, content, *says):
+        with contextlib.ExitStack() as stack:
+            folder = stack.enter_context(tempfile.TemporaryDirectory())
+            path = os.path.join(folder, "c.json")
+            with open(path, "wb") as file:
+                file.write(content)
+            out, err = io.StringIO(), io.StringIO()
+            with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+                code = checker.report(path)
+        self.assertEqual((code, out.getvalue()), (2, ""), content[:80])
+        self.assertRegex(err.getvalue(), r"\A.*c\.json: \$[^:\n]*: .*expected.*\n\Z")
+        self.assertLess(len(err.getvalue()), 600)
+        for word in says:
+            self.assertIn(word, err.getvalue())
+
+    def test_exit_codes(self):
+        holds, violated, undetermined = (REFERENCE[name] for name in ("chain_l1", "one_sided_paper", "eps_zero"))
+        for contents, code in (([holds], 0), ([violated], 1), ([undetermined], 3), ([b"{}"], 2), ([holds, undetermined], 3),
+                               ([undetermined, violated, holds], 1), ([violated, b"[", undetermined], 2)):
+            self.assertEqual(self.run_on(*contents)[0], code)
+        self.assertEqual(self.run_on()[0], 2)
+
+    def test_table_is_aligned(self):
+        _, out, err = self.run_on(REFERENCE["one_sided_paper"])
+        lines = out.splitlines()
+        self.assertEqual(err, "")
+        self.assertTrue(lines[0].endswith(": VIOLATED"))
+        self.assertEqual(len({line.index(word) for line, word in ((lines[1], "verdict"), (lines[2], "violated"), (lines[3], "holds"))}), 1)
+
+    def test_hostile_files(self):
+        text = json.dumps(REFERENCE["one_sided_paper"]).encode()
+
+        def instead(old, new):
+            self.assertIn(old, text)
+            return text.replace(old, new, 1)
+
+        for nest in (b"[", b'{"a":', b'{"format": ['):
+            self.refused(nest * 200000, "$")
+        self.refused(b"[" * 200000 + b"]" * 200000)
+        self.refused(b"")
+        self.refused(b"null", "an object")
+        self.refused(b"\xff\xfe{}", "not JSON")
+        self.refused(b"\xef\xbb\xbf" + text)
+        self.refused(text + b"x")
+        self.refused(text[:-10])
+        self.refused(instead(b'"states": 3', b'"states": 1000000000000000000'), "$.model.states")
+        self.refused(instead(b'"states": 3', b'"states": 1' + b"0" * 1000000), "$.model.states")
+        self.refused(instead(b'"states": 3', b'"states": 3.0'), "$.model.states")
+        self.refused(instead(b'"states": 3', b'"states": 3e0'), "$.model.states")
+        self.refused(instead(b'"states": 3', b'"states": -0'), "$.model.states")
+        self.refused(instead(b'"states": 3', b'"states": NaN'), "$.model.states")
+        self.refused(instead(b'"states": 3', b'"states": -Infinity'), "$.model.states")
+        self.refused(instead(b'"states": 3', b'"states": true'), "$.model.states")
+        self.refused(instead(b'"discount": "1/2"', b'"discount": 0.5'), "$.model.discount")
+        self.refused(instead(b'"discount": "1/2"', b'"discount": "1e999"'), "$.model.discount")
+        self.refused(instead(b'"discount": "1/2"', b'"discount": "1/' + b"7" * 1000000 + b'"'), "$.model.discount")
+        self.refused(instead(b'"eps": "1"', b'"eps": "' + b"9" * 1000000 + b'"'), "$.model.eps")
+        self.refused(instead(b'"eps": "1"', b'"eps": "1/0"'), "$.model.eps")
+        self.refused(instead(b'"eps": "1"', b'"eps": "\\ud800"'), "$.model.eps")
+        self.refused(instead(b'"eps": "1"', b'"eps": "1", "eps": "1"'), "$.model:", "repeated")
+        self.refused(instead(b'"eps": "1"', b'"eps": "1", "\\u0065ps": "1"'), "$.model:", "repeated")
+        self.refused(instead(b'"eps": "1"', b'"eps": "1", "a\\nb": "1"'), "$.model:", "unknown")
+        self.refused(instead(b'"reading"', b'"tie": "lowest", "reading"'), "$:", "repeated")
+        self.refused(instead(b'"verdict": "violated"', b'"verdict": ["violated"]'), "$.claims[0]")
+        self.refused(instead(b'"rewards": [[', b'"rewards": [[[], '), "$.model.actions")
+        self.refused(instead(b'"rewards": [[', b'"rewards": [], "x": [['), "$.model")
+        self.refused(b'{"format": "maximin-certificate", "version": 1, "model": {"states": 1000000000000000000}}')
+
+    def test_repeated_members_everywhere(self):
+        def texts(value):
+            """The JSON text of a value, once for each object in it that has a member twice."""
+            items = list(value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ())
+            plain = [(json.dumps(key) + ": " if isinstance(value, dict) else "") + json.dumps(item) for key, item in items]
+            left, right = "{}" if isinstance(value, dict) else "[]"
+            if isinstance(value, dict) and items:
+                yield left + ", ".join(plain + plain[:1]) + right
+            for i, (key, item) in enumerate(items):
+                for text in texts(item):
+                    name = json.dumps(key) + ": " if isinstance(value, dict) else ""
+                    yield left + ", ".join(plain[:i] + [name + text] + plain[i + 1:]) + right
+
+        count = 0
+        for text in texts(REFERENCE["one_sided_paper"]):
+            self.refused(text.encode(), "repeated name")
+            count += 1
+        self.assertGreater(count, 20)
+
+    def test_files_that_cannot_be_read(self):
+        done = subprocess.run([sys.executable, CHECKER, "/nowhere/c.json"], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (2, "", 1))
+        self.assertEqual(subprocess.run([sys.executable, CHECKER, HERE], capture_output=True, check=False).returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
