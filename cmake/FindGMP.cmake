@@ -9,3 +9,12 @@ if(GMP_FOUND AND NOT TARGET GMP::GMP)
   set_target_properties(GMP::GMP PROPERTIES
     IMPORTED_LOCATION "${GMP_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${GMP_INCLUDE_DIR}")
 endif()
+
+# Its C++ interface, GMP::gmpxx, where that is there too.
+find_library(GMPXX_LIBRARY gmpxx)
+mark_as_advanced(GMPXX_LIBRARY)
+if(GMP_FOUND AND GMPXX_LIBRARY AND NOT TARGET GMP::gmpxx)
+  add_library(GMP::gmpxx UNKNOWN IMPORTED)
+  set_target_properties(GMP::gmpxx PROPERTIES
+    IMPORTED_LOCATION "${GMPXX_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${GMP_INCLUDE_DIR}" INTERFACE_LINK_LIBRARIES GMP::GMP)
+endif()

@@ -1,5 +1,6 @@
 # Installs every floor and exports it for find_package(Maximin [COMPONENTS floor...]).
 # A floor is a component with an export of its own, so that who asks for theory alone needs Eigen alone.
+# proofs_check/checker is no floor: of it the program alone is installed.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Maximin)
 
@@ -10,7 +11,7 @@ foreach(floor IN LISTS floors)
   install(TARGETS maximin_${floor} EXPORT Maximin_${floor})
   install(EXPORT Maximin_${floor} NAMESPACE maximin:: FILE Maximin_${floor}.cmake DESTINATION ${package_dir})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${floor}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/maximin/${floor}
-    FILES_MATCHING PATTERN "*.hpp")
+    FILES_MATCHING PATTERN "*.hpp" PATTERN checker EXCLUDE)
 
   get_property(links GLOBAL PROPERTY MAXIMIN_LINK_${floor})
   set(lower_floors "")

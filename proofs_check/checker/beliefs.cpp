@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "sections.hpp"
+
+namespace maximin::checker {
+namespace {
+
+using Position = std::pair<std::size_t, Indices>;  // the true state and the belief
+
+/// The belief game of one model: its positions as they were listed, looked up by what leads to them.
+class Game {
+ public:
+  Game(const Model& m, const Table& q_star, bool highest, const Node& node) : m_(m), path_(node.path()) {
+    for (const Node& entry : node.items()) {
+      const std::vector<Node> parts = entry.items(2);
+      Position position{parts[0].index(m.states), {}};
+      for (const Node& member : parts[1].items()) position.second.push_back(member.index(m.states));
+      const Indices& belief = position.second;
+      if (belief.empty() || std::adjacent_find(belief.begin(), belief.end(), std::greater_equal<>()) != belief.end()) {
+        refuse(parts[1].path(), "expected states, one at least, ascending");
+      }
+      if (!positions_.empty() && !(positions_.back()->first < position)) {
+        refuse(entry.path(), "not above the one before it, expected them ascending");
+      }
+      positions_.push_back(numbers_.emplace(std::move(position), positions_.size()).first);
+      actions_.push_back(maximin_action(m, q_star, positions_.back()->first.second, highest));
+    }
+  }
+
+  std::size_t size() const { return positions_.size(); }
+  const Position& operator[](std::size_t i) const { return positions_[i]->first; }
+  std::size_t action(std::size_t i) const { return actions_[i]; }
+
+  /// The number of the position that `belief` narrowed to B(t) makes, of true state s. Everything is possible at first.
+  std::size_t meet(std::size_t s, std::size_t t, const Indices* belief) const {
+    Position position{s, {}};
+    if (belief == nullptr) {
+      position.second = m_.balls[t];
+    } else {
+      std::set_intersection(m_.balls[t].begin(), m_.balls[t].end(), belief->begin(), belief->end(),
+                            std::back_inserter(position.second));
+    }
+    const auto found = numbers_.find(position);
+    if (found != numbers_.end()) return found->second;
+    std::string text;
+    for (const std::size_t state : position.second) text += (text.empty() ? "" : ", ") + std::to_string(state);
+    refuse(path_, "none of state " + std::to_string(s) + " and belief {" + text + "}, expected all that are reached");
+  }
+
+  /// The states that may follow a belief under the agent's action, as far as the agent can tell.
+  Indices successors(std::size_t i) const {
+    std::set<std::size_t> next;
+    for (const std::size_t state : positions_[i]->first.second) {
+      for (const auto& entry : m_.rows[m_.at(state, actions_[i])]) next.insert(entry.first);
+    }
+    return {next.begin(), next.end()};
+  }
+
+ private:
+  const Model& m_;
+  std::string path_;
+  std::map<Position, std::size_t> numbers_;
+  std::vector<std::map<Position, std::size_t>::const_iterator> positions_;
+  Indices actions_;
+};
+
+}  // namespace
+
+Table check_test_time(const Node& node, const Model& m, const Table& q_star, bool highest) {
+  node.expect_members({"policy", "robust"});
+  const Node policy = node.member("policy"), robust = node.member("robust");
+  const Indices expected = maximin_policy(m, q_star, highest);
+  expect_equal(policy.path(), policy.indices(m.states, m.actions), expected, " of the maximin policy of Q*");
+  return expect_robust_values(m, robust.table(m.states), expected, robust.path());
+}
+
+BeliefGame check_belief_game(const Node& node, const Model& m, const Table& q_star, bool highest) {
+  node.expect_members({"positions", "values", "reach", "exact"});
+  const Game game(m, q_star, highest, node.member("positions"));
+  const Node values_node = node.member("values"), reach = node.member("reach");
+  const Table values = values_node.table(game.size());
+  BeliefGame result;
+  result.exact = node.member("exact").boolean();
+
+  std::vector<bool> reached(game.size());
+  Indices to_visit;
+  const auto reach_position = [&](std::size_t i) {
+    if (!reached[i]) to_visit.push_back(i);
+    reached[i] = true;
+    return i;
+  };
+  // The least over t in B(s) of the values of the positions that t leads to, all of which are marked as reached.
+  const auto worst_of = [&](std::size_t s, const Indices* belief) -> const Integer& {
+    const Integer* worst = nullptr;
+    for (const std::size_t t : m.balls[s]) {
+      const Integer& value = values.top[reach_position(game.meet(s, t, belief))];
+      if (worst == nullptr || value < *worst) worst = &value;
+    }
+    return *worst;
+  };
+  result.worst.bottom = values.bottom;
+  for (std::size_t s = 0; s < m.states; ++s) result.worst.top.push_back(worst_of(s, nullptr));
+  while (!to_visit.empty()) {
+    const std::size_t i = to_visit.back(), s = game[i].first, row = m.at(s, game.action(i));
+    to_visit.pop_back();
+    const Indices successors = game.successors(i);
+    Integer sum;
+    for (const auto& [next, p] : m.rows[row]) sum += p * worst_of(next, &successors);
+    const Rational follows = m.rewards[row] + m.discount * Rational(sum) / Rational(m.whole * values.bottom);
+    const Rational value = values[i];
+    if (result.exact ? value == follows : value <= follows) continue;
+    refuse(item(values_node.path(), i),
+           shown(value) + ", expected " + (result.exact ? "" : "at most ") + shown(follows));
+  }
+  const auto unreached = std::find(reached.begin(), reached.end(), false);
+  if (unreached != reached.end()) {
+    refuse(item(node.path() + ".positions", static_cast<std::size_t>(unreached - reached.begin())),
+           "not reached, expected only positions that are");
+  }
+  for (std::size_t i = 0; i < game.size(); ++i) {
+    for (const std::size_t member : game[i].second)
+      result.reach = std::max(result.reach, m.near_at(game[i].first, member));
+  }
+  expect_equal(reach.path(), reach.number(), result.reach);
+  return result;
+}
+
+}  // namespace maximin::checker
