@@ -1,0 +1,43 @@
+(** * What the theorems rest on: ./check requires the answer "Closed under the global context" for each of them *)
+From Maximin Require claims oscillation existence counterexample.
+
+Print Assumptions claims.lemma_1.
+Print Assumptions claims.lemma_1_iterates.
+Print Assumptions claims.lemma_2.
+Print Assumptions claims.lemma_3.
+Print Assumptions claims.contraction_star.
+Print Assumptions claims.contraction_rob.
+Print Assumptions claims.monotone.
+Print Assumptions claims.uniqueness.
+Print Assumptions claims.gap_nonneg.
+Print Assumptions claims.rob_is_worst.
+Print Assumptions claims.theorem_1_every_n.
+Print Assumptions claims.theorem_1.
+Print Assumptions claims.a_optimal_attacker_every_n.
+Print Assumptions claims.a_optimal_attacker.
+Print Assumptions claims.b_one_sided.
+Print Assumptions claims.b_own_attacker.
+Print Assumptions claims.c_finite_n.
+Print Assumptions claims.c_own_attacker.
+Print Assumptions claims.c_closed_form.
+Print Assumptions claims.c_finite_n_any_delta.
+Print Assumptions claims.c_finite_n_any_start.
+Print Assumptions claims.d_iterates.
+Print Assumptions claims.d_lemma_2.
+Print Assumptions claims.d_finite_n.
+Print Assumptions claims.d_total_variation.
+Print Assumptions claims.d_never_larger.
+Print Assumptions claims.e_test_time.
+Print Assumptions claims.e_lipschitz_of_q_star.
+Print Assumptions claims.f_belief.
+Print Assumptions claims.f_belief_any_history.
+Print Assumptions oscillation.near_lemma_2.
+Print Assumptions oscillation.near_finite_n.
+Print Assumptions oscillation.near_test_time.
+Print Assumptions oscillation.near_never_larger.
+Print Assumptions existence.exists_pair.
+Print Assumptions existence.exists_star.
+Print Assumptions existence.exists_rob.
+Print Assumptions existence.exists_iteration.
+Print Assumptions counterexample.printed_theorem_1_is_false.
+Print Assumptions counterexample.steep_start.
