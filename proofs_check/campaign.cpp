@@ -47,7 +47,7 @@ DrawnModel draw_trial(const Campaign& campaign, const ModelSource& source, long 
 }
 
 TrialRecord run_trial(const Campaign& campaign, const DrawnModel& drawn, long trial) {
-  TrialRecord record{trial, drawn.family, {}};
+  TrialRecord record{trial, drawn.family, {}, drawn.score};
   try {
     record.found = campaign.examination.exact
                        ? examine_exactly(rationalise(drawn.model), {}, campaign.examination)

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,6 +18,7 @@ namespace maximin {
 struct DrawnModel {
   std::string family;
   Model<double> model;
+  std::optional<double> score = {};  ///< of a search, kept in the record
 };
 
 /// Draws the model of a trial. Must be a function of the stream alone, and safe to call from several threads.

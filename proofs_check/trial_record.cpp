@@ -138,6 +138,7 @@ std::string_view to_string(Reading reading) {
 
 Json to_json(const TrialRecord& record) {
   Json json{{"trial", record.trial}, {"family", record.family}};
+  if (record.score) json["score"] = number(*record.score);
   for_each_field(record.found, [&]<class T>(const char* name, const T& field) {
     if constexpr (std::is_same_v<T, double>) {
       json[name] = number(field);
@@ -158,6 +159,7 @@ TrialRecord trial_record_from_json(const Json& json) {
   TrialRecord record;
   record.trial = field_of<long>(json, "trial");
   record.family = field_of<std::string>(json, "family");
+  if (json.contains("score")) record.score = number(json["score"]);
   for_each_field(record.found, [&]<class T>(const char* name, T& field) {
     if constexpr (std::is_same_v<T, double>) {
       field = number(json.at(name));

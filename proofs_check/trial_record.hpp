@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -12,7 +13,8 @@ namespace maximin {
 struct TrialRecord {
   long trial = 0;
   std::string family;  ///< of random models, or the name of the model
-  Examination found;
+  Examination found = {};
+  std::optional<double> score = {};  ///< of a search, what it maximises
 };
 
 /// The record as JSON with a fixed order of keys. NaN and infinity become null.

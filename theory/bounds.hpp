@@ -60,8 +60,9 @@ Scalar theorem_1_one_sided(const Scalar& gamma, const Scalar& delta) {
   return delta / (rest * rest);
 }
 
-/// Strengthening C, for every n, where Delta bounds T*Q_n - Q_{n+1} in every round (for the Delta of a Lipschitz
-/// constant: Q_0 = 0, or any Q_0 that is Lipschitz with it):
+/// Strengthening C, for every n, where Delta bounds T*Q_n - Q_{n+1} in every round. The Delta of a Lipschitz constant
+/// does for Q_0 = 0; and for any Q_0 that is Lipschitz with it and has span(Q_0) <= span(R)/(1-gamma) (2
+/// R_max/(1-gamma) for the constant L). Lipschitz alone is not enough (proofs_check/coq/counterexample.v, steep_start).
 ///     gap_n <= [ gamma ( gamma^n (d_0 + u_0) + Delta (1-gamma^n)/(1-gamma) ) + Delta ] / (1-gamma),
 /// d_0 = max (Q*-Q_0)^+, u_0 = max (Q_0-Q*)^+.
 template <class Scalar>

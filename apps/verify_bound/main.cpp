@@ -6,6 +6,8 @@
 
 #include "campaign_command.hpp"
 #include "certify_command.hpp"
+#include "check_command.hpp"
+#include "falsify_command.hpp"
 #include "model_command.hpp"
 #include "options.hpp"
 
@@ -26,10 +28,26 @@ constexpr const char* examples = R"(Examples:
 Exit codes: 0 holds, 1 a claim is violated, 2 bad usage or input, 3 undetermined, 4 an assumption of a claim fails)";
 
 constexpr const char* certify_examples =
-    R"(The certificate holds everything that a sceptic needs (docs/certificate-format.md); check_certificate verifies it.
+    R"(The certificate holds everything that a sceptic needs (docs/certificate-format.md); verify_bound check verifies it.
 Examples:
   verify_bound certify --example one-sided --reading paper -o refuted.json
   verify_bound certify lake.json --metric hops --eps 1 --discount 0.95 -o lake.cert.json)";
+
+constexpr const char* check_examples =
+    R"(The checker shares no code with certify. Exit codes: 0 all that is claimed is proved, 1 a claim is violated and that is
+proved, 2 not a certificate (one line says where), 3 a claim is open. An independent one in plain Python:
+proofs_check/check_certificate.py.
+Examples:
+  verify_bound check lake.cert.json
+  verify_bound check *.cert.json --json)";
+
+constexpr const char* falsify_examples =
+    R"(Random starts, hill climbing, shrinking. Exit codes: 0 no claim was refuted, 1 one was.
+Examples:
+  verify_bound falsify                                   a minute for all goals: how tight is each bound?
+  verify_bound falsify --goal theorem-1 --reading paper  the printed theorem falls in seconds
+  verify_bound falsify --goal settling,sharper-belief --seconds 30
+  verify_bound falsify --goal D --seconds 3600 --trials-out night --resume)";
 
 int run(int argc, char** argv) {
   using namespace maximin;
@@ -44,8 +62,18 @@ int run(int argc, char** argv) {
   CLI::App* certify_command = program.add_subcommand("certify", "prove the claims on one model, in exact arithmetic");
   certify_command->footer(certify_examples);
   verify_bound::declare(*certify_command, certify);
+  verify_bound::CheckCommand check;
+  CLI::App* check_command = program.add_subcommand("check", "verify certificates by substitution alone");
+  check_command->footer(check_examples);
+  verify_bound::declare(*check_command, check);
+  verify_bound::FalsifyCommand falsify;
+  CLI::App* falsify_command = program.add_subcommand("falsify", "search for models that break a claim, or nearly so");
+  falsify_command->footer(falsify_examples);
+  verify_bound::declare(*falsify_command, falsify);
   return apps::run_program(program, argc, argv, [&]() -> int {
     if (certify_command->parsed()) return verify_bound::run_certify_command(certify);
+    if (check_command->parsed()) return verify_bound::run_check_command(check);
+    if (falsify_command->parsed()) return verify_bound::run_falsify_command(falsify);
     if (options.explain) {
       apps::print(claims_text());
       return apps::ExitCode::success;

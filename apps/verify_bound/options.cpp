@@ -220,9 +220,13 @@ ExaminationOptions examination_options(const Options& o) {
   return e;
 }
 
+std::optional<Range<State>> state_range(const std::string& text) {
+  return range<State>(text, "--states", 2, 1000);
+}
+
 FamilyOptions family_options(const Options& o) {
   FamilyOptions f;
-  f.states = range<State>(o.states, "--states", 2, 1000);
+  f.states = state_range(o.states);
   f.actions = range<Action>(o.actions, "--actions", 1, 1000);
   f.discount = range<double>(o.gamma, "--gamma", 0.0, 0.999999);
   f.eps = o.model.eps;

@@ -69,6 +69,9 @@ std::optional<std::set<ClaimId>> claims_named(const std::vector<std::string>& na
 /// What to examine on each model. Throws InputError on an unknown claim.
 ExaminationOptions examination_options(const Options& options);
 
+/// The range of --states. Throws InputError where it is none.
+std::optional<Range<State>> state_range(const std::string& text);
+
 /// The restrictions on the random family. Throws InputError on a range that is not one.
 FamilyOptions family_options(const Options& options);
 

@@ -41,6 +41,13 @@ std::filesystem::path name_for(const std::filesystem::path& stem, const std::str
 
 }  // namespace
 
+std::string save_under_new_name(const std::filesystem::path& stem, const Model<double>& model) {
+  const std::string text = file_text(model);
+  const std::filesystem::path path = name_for(stem.lexically_normal(), text);
+  apps::write_file(path, text, apps::Overwrite::replace);
+  return path.string();
+}
+
 void write_model(const std::filesystem::path& path, const Model<double>& model) {
   apps::write_file(path, file_text(model), apps::Overwrite::replace);
 }
@@ -67,12 +74,10 @@ void save_violation(const Options& options, Model<double> model, long trial, Cla
   model = shrink(std::move(model), still_violates);
   model.name = fmt::format("violates {} (seed {}, trial {})", claim(id).name, options.seed, trial);
   const std::string name = fmt::format("violation-{}-{}-{}", options.seed, trial, claim(id).name);
-  const std::filesystem::path path =
-      name_for((std::filesystem::path(options.violation_dir) / name).lexically_normal(), file_text(model));
-  write_model(path, model);
+  const std::string path = save_under_new_name(std::filesystem::path(options.violation_dir) / name, model);
   const std::string reading = options.reading == "corrected" ? "" : " --reading " + options.reading;
   fmt::print(stderr, "A model that violates {}, shrunk from {} to {} states: {}\nSee it: verify_bound --model {}{}\n",
-             claim(id).name, states, model.mdp.states(), path.string(), path.string(), reading);
+             claim(id).name, states, model.mdp.states(), path, path, reading);
 }
 
 }  // namespace maximin::verify_bound

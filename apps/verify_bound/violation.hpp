@@ -9,6 +9,9 @@
 
 namespace maximin::verify_bound {
 
+/// Writes the model to STEM.json, or where that holds another model to STEM-2.json and so on; returns the name.
+std::string save_under_new_name(const std::filesystem::path& stem, const Model<double>& model);
+
 /// Writes a model as a file of its own format.
 void write_model(const std::filesystem::path& path, const Model<double>& model);
 

@@ -1,0 +1,94 @@
+#include "check_command.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <maximin/apps/common/json_output.hpp>
+#include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/table.hpp>
+#include <maximin/proofs_check/checker/checker.hpp>
+#include <maximin/theory/error.hpp>
+
+#include "outcome.hpp"
+
+namespace maximin::verify_bound {
+namespace {
+
+checker::Report checked(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file + ": cannot be read, expected a certificate");
+  try {
+    return checker::check(in);
+  } catch (const checker::Refused& refused) {
+    throw InputError(fmt::format("{}: {}", file, refused.what()));
+  }
+}
+
+Outcome outcome_of(const checker::Report& report) {
+  const auto says = [&](const char* verdict) {
+    return std::any_of(report.claims.begin(), report.claims.end(), [&](const auto& c) { return c.verdict == verdict; });
+  };
+  return says("violated") ? Outcome::violated : says("undetermined") ? Outcome::undetermined : Outcome::holds;
+}
+
+/// An exact number, cut where it is long.
+std::string shown(const std::string& number) {
+  constexpr std::size_t longest = 24;
+  return number.size() <= longest ? number : fmt::format("{}... ({} characters)", number.substr(0, 10), number.size());
+}
+
+std::string text(const std::string& file, const checker::Report& report) {
+  apps::Table table;
+  for (const char* title : {"claim", "verdict", "left", "right"}) table.column(title, apps::Align::left);
+  for (const auto& c : report.claims) {
+    table.row({c.claim, c.verdict, shown(c.left), c.right.empty() ? "" : "<= " + shown(c.right)});
+  }
+  const Outcome outcome = outcome_of(report);
+  const char* verdict = outcome == Outcome::violated       ? "a claim is violated, and that is proved"
+                        : outcome == Outcome::undetermined ? "what holds is proved; a claim is open"
+                                                           : "all that it claims is proved";
+  return fmt::format("{}: a valid certificate; {}\n\n{}\n", apps::printable(file), verdict, table.text());
+}
+
+nlohmann::ordered_json report_json(const std::string& file, const checker::Report& report) {
+  nlohmann::ordered_json json{{"file", file}, {"exit_code", exit_code(outcome_of(report))}};
+  for (const auto& c : report.claims) {
+    auto& entry = json["claims"][c.claim] = {{"verdict", c.verdict}};
+    if (c.left.empty()) continue;
+    entry["left"] = c.left;
+    entry["right"] = c.right;
+  }
+  return json;
+}
+
+}  // namespace
+
+void declare(CLI::App& command, CheckCommand& o) {
+  command.add_option("CERTIFICATE", o.files, "certificates written by verify_bound certify")
+      ->required()
+      ->type_name("FILE");
+  command.add_flag("--json", o.json, "one JSON object on standard output, nothing else");
+}
+
+int run_check_command(const CheckCommand& options) {
+  nlohmann::ordered_json all{{"format", "maximin-check"}, {"version", 1}, {"maximin", MAXIMIN_VERSION}};
+  bool violated = false, undetermined = false;
+  std::string printed;
+  for (const std::string& file : options.files) {
+    const checker::Report report = checked(file);
+    violated = violated || outcome_of(report) == Outcome::violated;
+    undetermined = undetermined || outcome_of(report) == Outcome::undetermined;
+    if (options.json) {
+      all["certificates"].push_back(report_json(file, report));
+    } else {
+      printed += text(file, report);
+    }
+  }
+  apps::print(options.json ? apps::json_text(all) : printed);
+  return exit_code(violated ? Outcome::violated : undetermined ? Outcome::undetermined : Outcome::holds);
+}
+
+}  // namespace maximin::verify_bound
