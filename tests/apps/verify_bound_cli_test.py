@@ -20,6 +20,7 @@ GOLDEN = [
     Golden("verify_bound_cycling.txt", ["--example", "cycling"]),
     Golden("verify_bound_named.txt", ["slippery_grid.json"]),
     Golden("verify_bound_explain.txt", ["--explain"]),
+    *[Golden("verify_bound_help_%s.txt" % c, [c, "--help"]) for c in ("certify", "check", "falsify")],
 ]
 
 # Options of the one kind of run that would be ignored in the other.
@@ -60,6 +61,16 @@ REFUSALS = [
     *[Refusal(["--replay", "1", *given], 2, "%s: has no effect beside --replay" % given[0])
       for given in (["--trials-out", "t.jsonl"], ["--trials", "5"], ["--threads", "1"], ["--resume"], ["--violation-dir", "."])],
     Refusal(["m.json"], 2, "m.json: $.epsilon: unknown name, expected 'eps'?", {"m.json": model(epsilon=1)}),
+    Refusal(["certify", "--example", "cycling"], 2, "--output"),
+    Refusal(["certify", "--example", "cycling", "-o", "there.json"], 2, "there.json exists", {"there.json": "kept"}),
+    Refusal(["certify", "m.json", "-o", "c.json"], 4, "Assumption 1", {"m.json": model(points=[[0], [0]], norm="l1", eps=1)}),
+    Refusal(["check", "absent.json"], 2, "absent.json: cannot be read"),
+    Refusal(["check", "bad.json"], 2, "bad.json: $", {"bad.json": "{"}),
+    Refusal(["check"], 2, "CERTIFICATE"),
+    Refusal(["falsify", "--goal", "theorem-2"], 2, "--goal: 'theorem-2' is unknown"),
+    Refusal(["falsify", "--resume"], 2, "--trials-out"),
+    Refusal(["falsify", "--states", "9:3"], 2, "LOW:HIGH"),
+    Refusal(["--arith", "decimal"], 2, "exact"),
     Refusal(["m.json", "--model", "m.json"], 2, "given more than once", {"m.json": model()}),
     Refusal(["--trials", "1", "--trials-out", "no-such-folder/t.jsonl"], 2, "no-such-folder/t.jsonl"),
     Refusal(["--trials", "1", "--violation-dir", "no-such-folder"], 2,
@@ -275,7 +286,70 @@ def check_sigint(program):
     return check_kill(program, signal.SIGINT, 3)
 
 
-CHECKS = [check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
+def certified(program, folder, *arguments):
+    """The exit codes of certify and of check, and the certificate."""
+    made = run(program, ["certify", *arguments, "-o", "c.json", "--force"], cwd=folder)
+    verified = run(program, ["check", "c.json"], cwd=folder)
+    with open(os.path.join(folder, "c.json")) as f:
+        return made.returncode, verified.returncode, json.load(f)
+
+
+def check_certify(program):
+    """What certify proves, check verifies: a theorem that holds, one that is refuted, a cycle."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        for arguments, code, period in ((["--example", "one-sided"], 0, 1), (["--example", "one-sided", "--reading", "paper"], 1, 1),
+                                        (["--example", "cycling"], 0, 3), (["--example", "chain"], 0, None)):
+            made, verified, certificate = certified(program, folder, *arguments)
+            if (made, verified) != (code, code) or period not in (None, certificate["limit"]["period"]):
+                problems.append("%s: exit codes %d and %d" % (arguments, made, verified))
+    return problems
+
+
+def check_tampered(program):
+    """A certificate with a digit changed is refused in one line with the place, and so is what is no certificate."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        certificate = certified(program, folder, "--example", "one-sided", "--reading", "paper")[2]
+        for change in (lambda c: c["claims"][4].update(right="7"), lambda c: c["optimal"].__setitem__(0, "1"),
+                       lambda c: c["claims"][4].update(verdict="holds"), lambda c: c.pop("limit")):
+            changed = json.loads(json.dumps(certificate))
+            change(changed)
+            with open(os.path.join(folder, "t.json"), "w") as f:
+                json.dump(changed, f)
+            result = run(program, ["check", "t.json"], cwd=folder)
+            if result.returncode != 2 or result.stdout or result.stderr.count(b"\n") != 1 or b"t.json: $" not in result.stderr:
+                problems.append("exit code %d, %r" % (result.returncode, result.stderr))
+    return problems
+
+
+def check_exact_campaign(program):
+    """Every verdict proved, the same bytes on any thread count, and the same claims as in floating point."""
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = ["--exact", "--trials", "30", "--states", "3:12", "--json", "--quiet"]
+        one = run(program, [*arguments, "--threads", "1", "--trials-out", "1.jsonl"], cwd=folder)
+        two = run(program, [*arguments, "--threads", "2", "--trials-out", "2.jsonl"], cwd=folder)
+        same = one.stdout == two.stdout and read(folder, "1.jsonl") == read(folder, "2.jsonl")
+        summary = json.loads(one.stdout, parse_constant=no_constants)["summary"]
+        ok = one.returncode == 0 and summary["violations"] == 0 and summary["undetermined"] == 0
+        return [] if same and ok else ["exit code %d, same bytes %s, %s" % (one.returncode, same, summary)]
+
+
+def check_falsify(program):
+    """The printed theorem falls, a cycle is found and a sharper belief hurts, within seconds; models are written."""
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = ["falsify", "--restarts", "60", "--steps", "150", "--seconds", "100", "--json", "--threads", "2"]
+        printed = run(program, [*arguments, "--goal", "theorem-1", "--reading", "paper"], cwd=folder)
+        others = run(program, [*arguments, "--goal", "settling,sharper-belief,E"], cwd=folder)
+        found = {g["goal"]: g for out in (printed, others) for g in json.loads(out.stdout)["goals"]}
+        problems = ["%s: %s" % (n, found[n]) for n in ("theorem-1", "settling", "sharper-belief") if not found[n]["hit"]]
+        if printed.returncode != 1 or others.returncode != 0 or found["E"]["hit"]:
+            problems.append("exit codes %d and %d, %s" % (printed.returncode, others.returncode, found["E"]))
+        again = run(program, [found["theorem-1"]["file"], "--reading", "paper", "--claims", "theorem-1"], cwd=folder)
+        return problems if again.returncode == 1 else problems + ["the model does not violate Theorem 1 when read"]
+
+
+CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
           check_replay_hint, check_vacuous, check_assumption, check_terminal, check_report, check_explain, check_sigkill,
           check_sigint]
 
