@@ -10,6 +10,7 @@ Python 3.9 or later, standard library only. Exact: a table is integers over one 
 
 import json
 import math
+import operator
 import re
 import sys
 from collections import namedtuple
@@ -164,6 +165,11 @@ def common(rows):
     return Table([[x.numerator * (over // x.denominator) for x in row] for row in rows], over)
 
 
+def scaled(X, over):
+    """X over another denominator, a multiple of its own."""
+    return X if X.over == over else Table([[x * (over // X.over) for x in row] for row in X.rows], over)
+
+
 def difference(X, Y):
     """X - Y."""
     if X.over == Y.over:
@@ -221,7 +227,7 @@ class Model:
             self.set_distances(self.read_distances(*distances))
 
     def read_transitions(self, node):
-        """P[s][a] = ({s': integer}, their denominator); P_over is a common denominator."""
+        """P[s][a] = {s': integer}, over the common denominator P_over; and ({s': small integer}, factor) of each row for `back`."""
         found, previous = [[{} for _ in range(self.m)] for _ in range(self.n)], None
         for entry in node.array():
             s, a, t, p = entry.array(4)
@@ -230,16 +236,14 @@ class Model:
             previous, probability = place, p.number()
             p.require(probability > 0, f"{brief(probability)}, expected more than 0")
             found[place[0]][place[1]][place[2]] = probability
-        self.P = []
         for s, row in enumerate(found):
             for a, cell in enumerate(row):
                 total = sum(cell.values())
                 node.require(total == 1, f"state {s}, action {a}: probabilities sum to {brief(Fraction(total))}, expected 1")
-            self.P.append([])
-            for cell in row:
-                over = math.lcm(*(p.denominator for p in cell.values()))
-                self.P[s].append(({t: p.numerator * (over // p.denominator) for t, p in cell.items()}, over))
-        self.P_over = math.lcm(*(over for row in self.P for _, over in row))
+        self.P_over = over = math.lcm(*(p.denominator for row in found for cell in row for p in cell.values()))
+        self.P = [[{t: p.numerator * (over // p.denominator) for t, p in cell.items()} for cell in row] for row in found]
+        factors = [[math.gcd(*cell.values()) for cell in row] for row in self.P]
+        self.reduced = [[({t: p // f for t, p in cell.items()}, f) for cell, f in zip(*rows)] for rows in zip(self.P, factors)]
 
     def read_points(self, points, norm):
         rows = points.array()
@@ -255,18 +259,18 @@ class Model:
     def read_distances(self, node):
         d = [[None if x.value is None else x.number() for x in row.array(self.n)] for row in node.array(self.n)]
         over = math.lcm(*(x.denominator for row in d for x in row if x is not None))
-        scaled = [[None if x is None else int(x * over) for x in row] for row in d]
+        whole = [[None if x is None else x.numerator * (over // x.denominator) for x in row] for row in d]
+        infinite = 1 + 2 * max((x for row in whole for x in row if x is not None), default=0)  # above the sum of any two
+        scaled = [[infinite if x is None else x for x in row] for row in whole]
         for s in range(self.n):
             node.require(d[s][s] == 0, f"[{s}][{s}] is not 0, expected zeros on the diagonal")
             for t in range(self.n):
                 node.require(d[s][t] == d[t][s], f"[{s}][{t}] and [{t}][{s}] differ, expected a symmetric matrix")
                 node.require(d[s][t] is None or d[s][t] >= 0, f"[{s}][{t}] is negative, expected at least 0")
-        for s in range(self.n):
-            for t in range(self.n):
-                if scaled[s][t] is not None:
-                    for u, (x, y) in enumerate(zip(scaled[s], scaled[t])):
-                        if y is not None and (x is None or x > scaled[s][t] + y):
-                            node.wrong(f"[{s}][{u}] is above [{s}][{t}] + [{t}][{u}], expected the triangle inequality")
+        for s, row in enumerate(scaled):
+            for t, other in enumerate(scaled):
+                if max(map(operator.sub, row, other)) > row[t]:
+                    node.wrong(f"[{s}][u] is above [{s}][{t}] + [{t}][u] for some u, expected the triangle inequality")
         return d
 
     def set_distances(self, d):
@@ -279,8 +283,12 @@ class Model:
             self.low = roots
             self.high = [[x if x * x == q else x + Fraction(1, TWO64) for x, q in zip(*rows)] for rows in zip(roots, d)]
         self.pairs = [(s, t) for s in range(self.n) for t in range(s + 1, self.n) if d[s][t] is not None]
-        self.low_over = math.lcm(*(self.low[s][t].denominator for s, t in self.pairs))
-        self.scaled_low = {(s, t): int(self.low[s][t] * self.low_over) for s, t in self.pairs}
+        # How much two states differ at most in a reward, in a probability; and in all probabilities together, by action.
+        self.reward_gap = {(s, t): max([abs(x - y) for x, y in zip(self.R.rows[s], self.R.rows[t])]) for s, t in self.pairs}
+        self.jump, self.moved = {}, {}
+        for s, t in self.pairs:
+            jumps = [[abs(p.get(u, 0) - q.get(u, 0)) for u in p.keys() | q.keys()] for p, q in zip(self.P[s], self.P[t])]
+            self.jump[s, t], self.moved[s, t] = max(map(max, jumps)), [sum(x) for x in jumps]
 
     def back(self, V):
         """back(V)(s,a) = R(s,a) + g sum_s' P(s'|s,a) V(s')"""
@@ -288,17 +296,16 @@ class Model:
         over = math.lcm(self.R.over, below)
         scale, r_scale = self.g.numerator * (over // below), over // self.R.over
         v = [row[0] for row in V.rows]
-        return Table([[r * r_scale + scale * (self.P_over // p_over) * sum([p * v[t] for t, p in p_row.items()])
-                       for r, (p_row, p_over) in zip(*rows)] for rows in zip(self.R.rows, self.P)], over)
+        return Table([[r * r_scale + scale * factor * sum([p * v[t] for t, p in p_row.items()])
+                       for r, (p_row, factor) in zip(*rows)] for rows in zip(self.R.rows, self.reduced)], over)
 
     def maximin(self, Q, states, tie):
         """argmax_a min_{m in states} Q(m,a)"""
-        order = range(self.m) if tie == "lowest" else range(self.m - 1, -1, -1)
-        return max(order, key=lambda a: min([Q.rows[m][a] for m in states]))  # the first of equals
+        return max(in_order(range(self.m), tie), key=lambda a: min([Q.rows[m][a] for m in states]))  # the first of equals
 
     def attack(self, Q, policy, tie):
         """argmin_{t in B(s)} Q(s,policy(t)) for every s"""
-        return [min(ball if tie == "lowest" else ball[::-1], key=lambda t: row[policy[t]]) for ball, row in zip(self.ball, Q.rows)]
+        return [min(in_order(ball, tie), key=lambda t: row[policy[t]]) for ball, row in zip(self.ball, Q.rows)]
 
     def worst(self, Q, allowed):
         """min_{t in B(s)} min_{a in allowed[t]} Q(s,a) for every s"""
@@ -323,22 +330,15 @@ def check_constants(node, model, reading, Qstar):
     """Each Lipschitz constant is attained where it says, and exceeded nowhere. Returns their values by name."""
     r_min, r_max = (Fraction(best(map(best, model.R.rows)), model.R.over) for best in (min, max))
 
-    def jumps(s, t, a):
-        (p, p_over), (q, q_over) = model.P[s][a], model.P[t][a]
-        over = math.lcm(p_over, q_over)
-        p_scale, q_scale = over // p_over, over // q_over
-        return {u: abs(p.get(u, 0) * p_scale - q.get(u, 0) * q_scale) for u in p.keys() | q.keys()}, over
+    def star_gap(s, t):
+        return max([abs(x - y) for x, y in zip(Qstar.rows[s], Qstar.rows[t])])
 
-    def most(s, t, name, a, u=None):
-        """The difference whose quotient by d+(s,t) is meant."""
-        if name in ("l_r", "l_star"):
-            X = model.R if name == "l_r" else Qstar
-            return Fraction(abs(X.rows[s][a] - X.rows[t][a]), X.over)
-        jump, over = jumps(s, t, a)
-        if name == "k":
-            return Fraction(sum(jump.values()), 2 * over)
-        return Fraction(max(jump.values()) if u is None else jump.get(u, 0), over)
-
+    # Of two states the difference whose quotient by d+ is meant, over a common denominator; and the same at one place.
+    meant = {
+        "l_r": (lambda s, t: model.reward_gap[s, t], lambda s, t, a: abs(model.R.rows[s][a] - model.R.rows[t][a]), model.R.over),
+        "l_p": (lambda s, t: model.jump[s, t], lambda s, t, a, u: abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)), model.P_over),
+        "k": (lambda s, t: max(model.moved[s, t]), lambda s, t, a: model.moved[s, t][a], 2 * model.P_over),
+        "l_star": (star_gap, lambda s, t, a: abs(Qstar.rows[s][a] - Qstar.rows[t][a]), Qstar.over)}
     names = ("l_r", "l_p", "k", "l_star")
     nodes = dict(zip(names + ("r_min", "r_max"), node.members(*names, "r_min", "r_max")))
     nodes["r_min"].equals(r_min, "the least reward")
@@ -349,11 +349,10 @@ def check_constants(node, model, reading, Qstar):
         value_node, at = nodes[name].members("value", "at")
         value = result[name] = value_node.number()
         value_node.require(value >= 0, "negative, expected a Lipschitz constant")
+        largest_of, at_place, over = meant[name]
         for s, t in model.pairs:
-            limit = value * model.high[s][t]
-            for a in range(model.m):
-                if most(s, t, name, a) > limit:
-                    nodes[name].wrong(f"exceeded at states {s}, {t}, action {a}, expected the largest quotient")
+            if largest_of(s, t) > value * model.high[s][t] * over:
+                nodes[name].wrong(f"exceeded at states {s}, {t}, expected the largest quotient")
         if value == 0:
             at.require(at.value is None, f"{at.shown()}, expected null where the value is 0")
             continue
@@ -361,7 +360,7 @@ def check_constants(node, model, reading, Qstar):
         s, t = (x.index(model.n) for x in place[:2])
         rest = [place[2].index(model.m)] + [x.index(model.n) for x in place[3:]]
         at.require(s < t and model.high[s][t], "expected two states s < t at a finite distance above 0")
-        at.require(most(s, t, name, *rest) == value * model.high[s][t], "does not attain the value, expected a place that does")
+        at.require(at_place(s, t, *rest) == value * model.high[s][t] * over, "does not attain the value, expected a place that does")
     return result
 
 
@@ -412,55 +411,101 @@ def brief_list(numbers):
 class Limit:
     """Conditions 1 to 4, and the values that follow."""
 
-    def __init__(self, node, model, last):
-        period, radius, orbit, low, fixed = node.members("period", "radius", "orbit", "low", "fixed")
-        self.k, self.r = len(orbit.array()), radius.number()
+    def __init__(self, node, model, last, tie):
+        period, radius, classes, orbit, low, fixed = node.members("period", "radius", "classes", "orbit", "low", "fixed")
+        self.k, self.r, self.tie = len(orbit.array()), radius.number(), tie
         period.require(type(period.value) is int and period.value == self.k > 0, f"{period.shown()}, expected {self.k}, as of orbit")
         radius.require(self.r > 0, f"{brief(self.r)}, expected more than 0")
         phases = orbit.array()
         U = [phase.values(model.n) for phase in phases]
         self.Q = [model.back(U[j - 1]) for j in range(self.k)]
+        self.delta = largest(absolute(difference(last, self.Q[0])))
+        radius.require(self.delta <= self.r, f"{brief(self.r)}, Q_N is {brief(self.delta)} from Q^0, expected at most r (condition 3)")
+        self.read_classes(classes, model, last)
         self.low, self.fixed, self.single = [], [], []
         for j, (low_node, fixed_node) in enumerate(zip(low.array(self.k), fixed.array(self.k))):
-            C = self.candidates(model, self.Q[j], phases[j])
-            played = self.check_phase(model, self.Q[j], U[j], C, phases[j])
+            wide = math.floor(2 * self.r * self.Q[j].over)  # 2r in units of Q^j: a gap is at most 2r if it is at most this
+            C = self.candidates(model, self.Q[j], wide)
+            A = self.provoked(model, self.Q[j], U[j], C, wide, phases[j])
+            settled = [all(len(C[t]) == 1 for t in ball) for ball in model.ball]
+            self.check_moves(classes, model, settled, A, j)
             V = low_node.values(model.n)
             check_same(low_node, V, model.worst(model.back(V), C), "min_{t in B(s)} min_{a in C_j(t)} back(V)(s,a)")
             self.low.append(V)
             self.single.append(self.k == 1 or all(len(c) == 1 for c in C))
-            unique = all(len(actions) == 1 for actions in played)
-            if not unique and self.k > 1:
-                fixed_node.require(fixed_node.value is None, f"{fixed_node.shown()}, expected null: an action is not unique")
+            actions = [self.action(s, ball, C, A[s], settled[s]) for s, ball in enumerate(model.ball)]
+            known = None not in actions
+            if not known and self.k > 1:
+                fixed_node.require(fixed_node.value is None, f"{fixed_node.shown()}, expected null: an action is not known")
                 self.fixed.append(None)
                 continue
             V = fixed_node.values(model.n)
-            expected = choose(model.back(V), [min(actions) for actions in played]) if unique else U[0]
-            check_same(fixed_node, V, expected, "back(V)(s, a_j(s))" if unique else "U_0")
+            expected = choose(model.back(V), actions) if known else U[0]
+            check_same(fixed_node, V, expected, "back(V)(s, a_j(s))" if known else "U_0")
             self.fixed.append(V)
-        distance = largest(absolute(difference(last, self.Q[0])))
-        radius.require(distance <= self.r, f"{brief(self.r)}, Q_N is {brief(distance)} from Q^0, expected at most r (condition 4)")
 
-    def candidates(self, model, Q, node):
-        """C_j(t) for every t; condition 1."""
-        result = []
-        for t, ball in enumerate(model.ball):
+    def read_classes(self, node, model, last):
+        """The class of every entry; condition 4, what it says of Q_N and rewards."""
+        self.of, count, first = [row.indices(model.n * model.m, model.m) for row in node.array(model.n)], 0, {}
+        for s, row in enumerate(self.of):
+            for a, c in enumerate(row):
+                node.require(c <= count, f"[{s}][{a}] is {c}, expected numbers from 0 in the order in which they first occur")
+                count = max(count, c + 1)
+                q, reward = first.setdefault(c, (last.rows[s][a], model.R.rows[s][a]))
+                node.require(last.rows[s][a] == q, f"[{s}][{a}] differs in Q_N from others of class {c}, expected equals (condition 4)")
+                node.require(model.R.rows[s][a] == reward, f"[{s}][{a}] differs in reward from others of class {c}, "
+                                                           "expected equals (condition 4)")
+
+    def candidates(self, model, Q, wide):
+        """C_j(t) for every t."""
+        order, result = in_order(range(model.m), self.tie), []
+        for ball in model.ball:
             v = [min([Q.rows[m][a] for m in ball]) for a in range(model.m)]
-            least = (max(v) * self.r.denominator - 2 * self.r.numerator * Q.over)
-            result.append([a for a, x in enumerate(v) if x * self.r.denominator >= least])
-            node.require(len({v[a] for a in result[t]}) == 1, f"candidates of state {t} differ, expected equals (condition 1)")
+            top, kept = max(v), []
+            M = [{self.of[m][a] for m in ball if Q.rows[m][a] <= v[a] + wide} for a in range(model.m)]
+            near = [a for a in order if v[a] >= top - wide]
+            for i, b in enumerate(near):
+                if not any(M[a] <= M[b] for a in near[:i]):
+                    kept.append(b)
+            result.append(kept)
         return result
 
-    def check_phase(self, model, Q, U, C, node):
-        """Conditions 2 and 3. Returns for every s the set of actions that round n of this phase may play there."""
-        check_same(node, U, model.worst(Q, C), "min_{t in B(s)} min_{a in C_j(t)} Q^j(s,a) (condition 2)")
+    def provoked(self, model, Q, U, C, wide, node):
+        """A_j(s) for every s; conditions 1 and 2."""
+        check_same(node, U, model.worst(Q, C), "min_{t in B(s)} min_{a in C_j(t)} Q^j(s,a) (condition 1)")
         best = Table([[min([max([row[a] for a in C[t]]) for t in ball])] for ball, row in zip(model.ball, Q.rows)], Q.over)
-        check_same(node, U, best, "min_{t in B(s)} max_{a in C_j(t)} Q^j(s,a) (condition 2)")
-        played = []
+        check_same(node, U, best, "min_{t in B(s)} max_{a in C_j(t)} Q^j(s,a) (condition 1)")
+        result = []
         for s, (ball, row, [u]) in enumerate(zip(model.ball, Q.rows, best.rows)):  # best is U, over the denominator of Q
-            near = {a for t in ball for a in C[t] if (row[a] - u) * self.r.denominator <= 2 * self.r.numerator * Q.over}
-            played.append({a for a in near if row[a] == u})
-            node.require(near == played[s], f"[{s}]: an action is within 2r above, expected none (condition 3)")
-        return played
+            near = {a for t in ball for a in C[t] if row[a] <= u + wide}
+            result.append({a for a in near if row[a] == u})
+            node.require(near == result[s], f"[{s}]: an action is within 2r above, expected none (condition 2)")
+        return result
+
+    def check_moves(self, node, model, settled, A, j):
+        """Condition 4, what it says of probabilities in phase j."""
+        group = [frozenset(self.of[s][a] for a in A[s]) if settled[s] else s for s in range(model.n)]  # equal where equivalent
+        first = {}
+        for s, row in enumerate(self.of):
+            for a, c in enumerate(row):
+                moves = {}
+                for t, p in model.P[s][a].items():
+                    moves[group[t]] = moves.get(group[t], 0) + p
+                node.require(moves == first.setdefault(c, moves), f"[{s}][{a}] differs in moves of phase {j} from others of class "
+                                                                  f"{c}, expected equals (condition 4)")
+
+    def action(self, s, ball, C, provoked, settled):
+        """a_j(s), the action that every pair of this phase takes in s; None where that is not known."""
+        if len(provoked) == 1:
+            return min(provoked)
+        if not settled or len({self.of[s][a] for a in provoked}) > 1:
+            return None
+        return next(C[t][0] for t in in_order(ball, self.tie) if C[t][0] in provoked)
+
+
+def in_order(indices, tie):
+    """Ascending indices in the order in which they win ties."""
+    return indices if tie == "lowest" else indices[::-1]
 
 
 # ---- Pessimism at test time, and beliefs -------------------------------------------------------------------------------
@@ -497,22 +542,21 @@ class BeliefGame:
                 positions_node.wrong(f"no [{s}, {brief_list(list(M))}], expected every position that is reached")
             if M not in action:
                 action[M] = model.maximin(Qstar, M, tie)
-                possible = {u for m in M for u in model.P[m][action[M]][0]}
+                possible = {u for m in M for u in model.P[m][action[M]]}
                 sights[M] = {}  # shown t -> the next belief
                 for t in {t for u in possible for t in model.ball[u]}:
                     sights[M][t] = tuple(u for u in model.ball[t] if u in possible)
-            row, row_over = model.P[s][action[M]]
             total = 0
-            for u, p in row.items():
+            for u, p in model.P[s][action[M]].items():
                 following = [(u, sights[M][t]) for t in model.ball[u]]
                 todo += [x for x in following if x not in reached]
                 reached.update(following)
                 if not all(x in self.value for x in following):
                     positions_node.wrong(f"not all that follows [{s}, {brief_list(list(M))}], expected every position that is reached")
                 total += p * min([self.value[x] for x in following])
-            below = row_over * model.g.denominator * self.over
+            below = model.P_over * model.g.denominator * self.over
             backup = model.R.rows[s][action[M]] * below + model.g.numerator * total * model.R.over  # over below * R.over
-            stated = self.value[position] * row_over * model.g.denominator * model.R.over
+            stated = self.value[position] * model.P_over * model.g.denominator * model.R.over
             if stated > backup or (stated < backup and self.exact):
                 values.wrong(f"[{positions.index(position)}] is not the value, expected {'' if self.exact else 'at most '}its backup")
         extra = next((x for x in positions if x not in reached), None)
@@ -532,6 +576,8 @@ class Instances:
         g, n = model.g, model.n
         l_r, l_p, size = constants["l_r"], constants["l_p"], constants["size"]
         L_print, L_sound = (l_r + n * l_p * x / (1 - g) for x in (constants["print"], size))
+        print_rights = self.lipschitz_rights(constants, n * constants["print"] / (1 - g))
+        rep_rights = self.lipschitz_rights(constants, g * n * size / (1 - g))
         L_rep, L_tv = l_r + g * n * l_p * size / (1 - g), l_r + g * constants["k"] * constants["span"] / (1 - g)
         D_print, D_sound, D_rep, D_tv = (2 * model.eps * g * L for L in (L_print, L_sound, L_rep, L_tv))
         least = Fraction(min(map(min, Qstar.rows)), Qstar.over)
@@ -555,9 +601,9 @@ class Instances:
             if all(fixed) and all(limit.single):
                 tables = [(m, X) for both in backs for m, X in zip(rounds.first, both)]
                 tables += [(self.N + j, X) for both in (low, fixed) for j, X in enumerate(both)]
-                self.of["lemma-1"] = [self.lipschitz(m, X, L_print, 0, True) for m, X in tables]
-            self.of["lemma-1-iterates"] = [self.lipschitz(m, X, L_rep, 0, True) for m, X in enumerate(rounds.tables[:-1])]
-            self.of["lemma-1-iterates"] += [self.lipschitz(self.N + j, limit.Q[j], L_rep, 2 * limit.r, False) for j in phases]
+                self.of["lemma-1"] = [self.lipschitz(m, X, print_rights) for m, X in tables]
+            self.of["lemma-1-iterates"] = [self.lipschitz(m, X, rep_rights) for m, X in enumerate(rounds.tables)]
+            self.of["lemma-1-iterates"] += [self.lipschitz(self.N + j, limit.Q[j], rep_rights, limit.delta) for j in phases]
             self.of["lemma-2"] = self.lemma_2(D_print)
             factor, sharp = (1 + g) / (1 - g)**2, 1 / (1 - g)**2
             self.of["theorem-1"] = [self.gap(self.N + j, fixed[j] or low[j], factor * D_print, bool(fixed[j])) for j in phases]
@@ -568,17 +614,27 @@ class Instances:
                 self.of[name] += [self.gap(self.N + j, low[j], min(F(self.N + j, D), F(None, D)), limit.single[j])
                                   for j in phases]
 
-    def lipschitz(self, n, X, L, extra, proves):
-        """abs(X(s,a)-X(t,a)) + extra <= L d-(s,t) for all pairs of states."""
+    def lipschitz_rights(self, constants, factor):
+        """r(s,t) + factor p(s,t) for all pairs of states, as a list of values."""
+        m, l_r, l_p = self.model, constants["l_r"], constants["l_p"]
+        return common([[max(l_r * m.low[s][t], Fraction(m.reward_gap[s, t], m.R.over))
+                        + factor * max(l_p * m.low[s][t], Fraction(m.jump[s, t], m.P_over))] for s, t in m.pairs])
+
+    def lipschitz(self, n, X, rights, delta=Fraction(0)):
+        """abs(X(s,a)-X(t,a)) + 2 g delta TV(s,t,a) <= right for all pairs of states.
+
+        Where nothing is added though g delta > 0, TV = 0, X differs as R does and left <= r(s,t) <= right: no such instance
+        can prove a violation, and it is left out with the others of its table.
+        """
         m = self.model
         if not m.pairs:
             return Family(None, True, 1, 1, [((), [0], 0)])
-        if extra:
-            X = Table([[x * extra.denominator for x in row] for row in X.rows], X.over * extra.denominator)
+        extra = m.g * delta / m.P_over  # times the sum of all differences of probabilities, 2 P_over TV
+        X = scaled(X, math.lcm(X.over, extra.denominator))
         added = int(extra * X.over)
-        return Family(n, proves, X.over, L.denominator * m.low_over,
-                      (((s, t), [abs(x - y) + added for x, y in zip(X.rows[s], X.rows[t])], L.numerator * m.scaled_low[s, t])
-                       for s, t in m.pairs))
+        return Family(n, added == 0, X.over, rights.over,
+                      (((s, t), [abs(x - y) + added * z for x, y, z in zip(X.rows[s], X.rows[t], m.moved[s, t])], right)
+                       for (s, t), [right] in zip(m.pairs, rights.rows)))
 
     def gap(self, n, X, right, proves):
         """Q*(s,a) - X(s,a) <= right"""
@@ -587,9 +643,9 @@ class Instances:
                       [((s,), row, right.numerator) for s, row in enumerate(lefts.rows)])
 
     def lemma_2(self, right):
-        limit, added = self.limit, 2 * self.model.g * self.limit.r
+        limit, added = self.limit, 2 * self.model.g * self.limit.delta
         steps = [(n, Q, self.rounds.tables[n + 1], Fraction(0), True) for n, Q in enumerate(self.rounds.tables[:-1])]
-        steps += [(self.N + j, Q, limit.Q[(j + 1) % limit.k], added, False) for j, Q in enumerate(limit.Q)]
+        steps += [(self.N + j, Q, limit.Q[(j + 1) % limit.k], added, limit.delta == 0) for j, Q in enumerate(limit.Q)]
         for n, Q, following, extra, proves in steps:
             lefts = absolute(difference(self.model.back(best_values(Q)), following))
             scale, more = extra.denominator, extra.numerator * lefts.over
@@ -672,7 +728,7 @@ def check_certificate(root):
     check_same(optimal, Vstar, best_values(Qstar), "max_a back(V)(s,a)")
     known = check_constants(constants, model, reading, Qstar)
     run = Rounds(pairs, rounds, model, tie)
-    the_limit = None if limit.value is None else Limit(limit, model, run.tables[-1])
+    the_limit = None if limit.value is None else Limit(limit, model, run.tables[-1], tie)
     test_value = check_test_time(test_time, model, Qstar, tie)
     the_game = None if game.value is None else BeliefGame(game, model, Qstar, tie)
     instances = Instances(model, known, Vstar, Qstar, run, the_limit, test_value, the_game)

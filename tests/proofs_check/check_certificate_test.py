@@ -27,12 +27,13 @@ import reference_certificates as reference  # noqa: E402
 
 # The verdicts in the order of the table: lemma-1, lemma-1-iterates, lemma-2, lemma-3, theorem-1, A, B, C, D, E, F.
 EXPECTED = {
-    "one_sided_corrected": "hhhhhhhhhhh", "one_sided_paper": "vhvhvhhhhhh", "cycle": "hhhhhhhhhhh", "cycle_ties": "uhhhhhhhhhh",
-    "cycle_ties_highest": "uhhhhhhhhhh", "chain_l1": "hhhhhhhhhhh", "plane_l2": "hhhhhhhhhhh", "islands": "hhhhhhhhhhh",
+    "one_sided_corrected": "hhhhhhhhhhh", "one_sided_paper": "vhvhvhhhhhh", "cycle": "hhhhhhhhhhh", "cycle_ties": "hhhhhhhhhhh",
+    "cycle_ties_highest": "hhhhhhhhhhh", "chain_l1": "hhhhhhhhhhh", "plane_l2": "hhhhhhhhhhh", "islands": "hhhhhhhhhhh",
     "eps_zero": "hhuhhhhhhhh", "one_state": "hhuhhhhhhhh", "tied_lowest": "hhhhhhhhhhh", "tied_highest": "hhhhhhhhhhh",
-    "negative": "hhhhhhhhhhh", "negative_paper": "vhhhhhhhhhh", "mirror": "hhhhhhhhhhh", "twins": "huhhhhhhhhh",
-    "twins_tie": "uuuhuuuuuhh", "discount_zero": "huhhhhhhhhh", "undecided": "uuuhuuuuuhu", "lower_bound": "hhhhhhhhhhh",
-    "random_six": "hhhhhhhhhhh"}
+    "negative": "hhhhhhhhhhh", "negative_paper": "vhhhhhhhhhh", "mirror": "hhhhhhhhhhh", "twins": "hhhhhhhhhhh",
+    "twins_tie": "hhhhhhhhhhh", "discount_zero": "hhhhhhhhhhh", "pit": "hhhhhhhhhhh", "pit_highest": "hhhhhhhhhhh",
+    "rows": "hhhhhhhhhhh", "rows_highest": "hhhhhhhhhhh", "detour": "hhuhhhhhhhh", "undecided": "uuuhuuuuuhu",
+    "lower_bound": "hhhhhhhhhhh", "random_six": "hhhhhhhhhhh"}
 
 CLAIMS = ["lemma-1", "lemma-1-iterates", "lemma-2", "lemma-3", "theorem-1", "A", "B", "C", "D", "E", "F"]
 WORDS = ["l1", "l2", "linf", "corrected", "paper", "lowest", "highest", "holds", "violated", "undetermined", "lemma-1", "A", "F"]
@@ -42,6 +43,7 @@ ALLOWED = {
     "another place that attains the same constant",
     "another instance of the same sides",
     "another radius or number of rounds for which everything else is the same",
+    "other classes for which everything else is the same",
     "a lower bound is claimed where the values are exact",
     "other lower bounds of the values of the game",
     "less is claimed",
@@ -89,7 +91,7 @@ def why_true(document, original):
     if game and not game["exact"] and original["belief_game"] and not original["belief_game"]["exact"]:
         slack = Fraction(1, 8)  # that of the reference certificate lower_bound
     options = {"reading": document["reading"], "tie": document["tie"], "rounds": len(document["rounds"]), "with_beliefs": bool(game),
-               "with_limit": bool(limit), "radius": limit and Fraction(limit["radius"]), "belief_slack": slack}
+               "with_limit": bool(limit), "radius": limit and Fraction(limit["radius"]), "classes": limit and limit["classes"], "belief_slack": slack}
     try:
         truth, instances = reference.examine(model_of(document), **options)
     except ValueError as error:
@@ -136,6 +138,8 @@ def why_true(document, original):
             return f"FALSE: {name}"
     if document["model"] != original["model"] or any(document[x] != original[x] for x in ("reading", "tie")):
         reasons.add("of another model, reading or tie, with the same consequences")
+    if limit and original["limit"] and limit["classes"] != original["limit"]["classes"]:
+        reasons.add("other classes for which everything else is the same")
     if document["rounds"] != original["rounds"] or (limit and limit["radius"] != original["limit"]["radius"]):
         reasons.add("another radius or number of rounds for which everything else is the same")
     return min(reasons) if reasons else "FALSE: nothing was changed"
@@ -178,6 +182,28 @@ def container_mutants(value):
             yield value[1:2] + value[:1] + value[2:]
         yield {}
     yield None
+
+
+def canonical(classes):
+    """The same partition, numbered as they first occur."""
+    numbers = {}
+    return [[numbers.setdefault(c, len(numbers)) for c in row] for row in classes]
+
+
+def class_mutants(classes):
+    """All merges of two classes, all splits of one entry from its class, all pairs of numbers exchanged; all apart, all one."""
+    count = max(map(max, classes)) + 1
+    for c in range(count):
+        for d in range(c):
+            yield "merged", canonical([[d if x == c else x for x in row] for row in classes])
+            yield "renumbered", [[d if x == c else c if x == d else x for x in row] for row in classes]
+    for s, row in enumerate(classes):
+        for a, c in enumerate(row):
+            if sum(other.count(c) for other in classes) > 1:
+                yield "split", canonical(classes[:s] + [row[:a] + [count] + row[a + 1:]] + classes[s + 1:])
+    yield "split", [[s * len(row) + a for a in range(len(row))] for s, row in enumerate(classes)]
+    yield "merged", [[0] * len(row) for row in classes]
+    yield "renumbered", [[c + 1 for c in row] for row in classes]
 
 
 def mutants(document, rng, most):
@@ -255,6 +281,36 @@ class RefusesWhatIsFalse(unittest.TestCase):
         self.assertEqual(wrong, [])
         self.assertGreater(counts["refused"], 5000)
 
+    def test_classes(self):
+        """Of the coarsest classes no two may be merged, and no numbers exchanged; finer ones may be as true."""
+        counts = {}
+        for name, original in REFERENCE.items():
+            if not original["limit"]:
+                continue
+            document = json.loads(json.dumps(original))
+            for kind, classes in class_mutants(original["limit"]["classes"]):
+                if classes == original["limit"]["classes"]:
+                    continue
+                document["limit"]["classes"] = classes
+                answer = check(document)
+                if isinstance(answer, str):
+                    self.assertIn("$.limit", answer)
+                    reason = "refused"
+                else:
+                    reason = why_true(document, original)
+                    self.assertEqual((kind, reason), ("split", "other classes for which everything else is the same"), name)
+                counts[kind, reason] = counts.get((kind, reason), 0) + 1
+        print(counts, file=sys.stderr)
+        self.assertGreater(counts["merged", "refused"], 100)
+        self.assertGreater(counts["split", "refused"], 10)
+
+    def test_classes_decide(self):
+        """With all entries apart, nothing of this is decided: the index of an action is, which radius and values do not show."""
+        for name in ("pit", "twins_tie", "cycle_ties"):
+            document = REFERENCE[name]
+            apart = [[s * len(row) + a for a in range(len(row))] for s, row in enumerate(document["limit"]["classes"])]
+            self.assertIn("$.limit", check(dict(document, limit=dict(document["limit"], classes=apart))), name)
+
     def test_violation_by_values_that_nobody_has(self):
         """In period 2 the attacker of theorem-1 is indifferent somewhere, so `fixed` is null; elsewhere it is not the optimal attacker.
 
@@ -262,10 +318,11 @@ class RefusesWhatIsFalse(unittest.TestCase):
         """
         rewards = [[0, 0], [0, 0], [0, 0], [-7, -8], [-4, 0], [-2, -4], [-8, -5],  # a cycle in which om_n is not optimal
                    [0, 0], [0, 0], [0, 0], [0, -1], [-1, -2], [-2, -3],            # 7 prefers 0, 9 prefers 1, 8 does not care
-                   [0, -1], ["-17/200", "-217/200"]]                               # these set l_r
-        targets = [[6, 3], [4, 3], [5, 1], [5, 4], [2, 0], [1, 4], [1, 0], [10, 11], [10, 10], [12, 10], [10, 10], [11, 11], [12, 12],
-                   [13, 13], [13, 13]]
-        distances = [[0 if s == t else None for t in range(15)] for s in range(15)]
+                   [0, -1], ["-17/200", "-217/200"],                               # these set l_r
+                   ["-9/10"] * 2, [0, 0], [-1, -1]]                                # worth the same from 8, now or later: no class
+        targets = [[6, 3], [4, 3], [5, 1], [5, 4], [2, 0], [1, 4], [1, 0], [10, 11], [15, 16], [12, 10], [10, 10], [11, 11], [12, 12],
+                   [13, 13], [13, 13], [10, 10], [17, 17], [10, 10]]
+        distances = [[0 if s == t else None for t in range(18)] for s in range(18)]
         for s, t, d in ((0, 1, 1), (1, 2, 1), (0, 2, 2), (7, 8, 1), (8, 9, 1), (7, 9, 2), (13, 14, 2)):
             distances[s][t] = distances[t][s] = d
         model = reference.Model("9/10", 1, rewards, reference.sure(*targets), distances=distances)

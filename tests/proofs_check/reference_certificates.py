@@ -139,36 +139,100 @@ def orbit_values(model, actions):
     return [flat[j * model.n:(j + 1) * model.n] for j in range(k)]
 
 
-class Limit:
-    """The limit as the page defines it, made from the candidate orbit; `valid(Q_N)` asks conditions 1 to 4."""
+def numbered(signature):
+    """Classes of the entries with equal signatures, numbered as they first occur, row by row."""
+    numbers = {}
+    return [[numbers.setdefault(x, len(numbers)) for x in row] for row in signature]
 
-    def __init__(self, model, orbit, radius=None):
+
+class Limit:
+    """The limit as the page defines it, made from the candidate orbit; `valid()` asks conditions 1 to 4.
+
+    Where no classes are given they are the coarsest for which condition 4 holds: a finer partition leaves more candidates,
+    and so more actions to provoke, fewer states that are settled and fewer that are equivalent; so what the coarsest one
+    separates, no other gathers.
+    """
+
+    def __init__(self, model, orbit, table, tie, radius=None, classes=None):
         k = self.k = len(orbit)
-        self.model, self.orbit = model, orbit
+        self.model, self.orbit, self.table, self.tie = model, orbit, table, tie
         self.Q = [model.back(orbit[j - 1]) for j in range(k)]
+        self.delta = far(table, self.Q[0])
         self.v = [[[min(Q[m][a] for m in model.ball[t]) for a in model.A] for t in model.S] for Q in self.Q]
         gaps = [max(row) - x for v in self.v for row in v for x in row]
         gaps += [self.Q[j][s][a] - orbit[j][s] for j in range(k) for s in model.S for a in model.A]
+        gaps += [self.Q[j][m][a] - self.v[j][t][a] for j in range(k) for t in model.S for a in model.A for m in model.ball[t]]
         gaps = [gap for gap in gaps if gap > 0]
         self.radius = radius or (min(gaps) / 3 if gaps else Fraction(1))
-        self.C = [[[a for a in model.A if row[a] >= max(row) - 2 * self.radius] for row in v] for v in self.v]
+        self.classes = numbered([[(table[s][a], model.R[s][a]) for a in model.A] for s in model.S])
+        if classes:
+            self.classes = classes
+        while True:
+            self.derive()
+            refined = numbered(self.signatures())
+            self.reproduced = refined == self.classes
+            if classes or self.reproduced:
+                break
+            self.classes = refined
         self.low = [model.extreme_value([sorted({a for t in model.ball[s] for a in C[t]}) for s in model.S], min) for C in self.C]
         self.single = [all(len(c) == 1 for c in C) for C in self.C]
         self.fixed = []
         for j in range(k):
-            played = [{a for t in model.ball[s] for a in self.C[j][t] if self.Q[j][s][a] == orbit[j][s]} for s in model.S]
-            if all(len(a) == 1 for a in played):
-                self.fixed.append(model.value([min(a) for a in played]))
+            actions = [self.action(j, s) for s in model.S]
+            if None not in actions:
+                self.fixed.append(model.value(actions))
             else:
                 self.fixed.append(orbit[0] if k == 1 else None)
 
-    def valid(self, table):
-        m = self.model
-        for j in range(self.k):
-            Q, U, C, v = self.Q[j], self.orbit[j], self.C[j], self.v[j]
+    def derive(self):
+        """C[j][t], played[j][s] (A_j(s) of the page) and settled[j][s], from the classes."""
+        m, twice = self.model, 2 * self.radius
+        self.C, self.played, self.settled = [], [], []
+        for Q, U, v in zip(self.Q, self.orbit, self.v):
+            C = []
             for t in m.S:
-                if len({v[t][a] for a in C[t]}) != 1:
-                    return False
+                near = [a for a in m.A if v[t][a] >= max(v[t]) - twice]
+                M = {a: {self.classes[s][a] for s in m.ball[t] if Q[s][a] <= v[t][a] + twice} for a in near}
+                C.append([b for b in near if not any(M[a].issubset(M[b]) for a in near if self.wins(a, b))])
+            self.C.append(C)
+            self.played.append([{a for t in m.ball[s] for a in C[t] if Q[s][a] == U[s]} for s in m.S])
+            self.settled.append([all(len(C[t]) == 1 for t in m.ball[s]) for s in m.S])
+
+    def wins(self, i, j):
+        """Whether index i comes before j among equals."""
+        return i < j if self.tie == "lowest" else i > j
+
+    def provoked_classes(self, j, s):
+        return frozenset(self.classes[s][a] for a in self.played[j][s])
+
+    def equivalent(self, j, s, t):
+        return s == t or self.settled[j][s] and self.settled[j][t] and self.provoked_classes(j, s) == self.provoked_classes(j, t)
+
+    def signatures(self):
+        """What condition 4 asks to be equal within a class, and the class."""
+        m = self.model
+        least = [[min(x for x in m.S if self.equivalent(j, x, s)) for s in m.S] for j in range(self.k)]
+        result = []
+        for s in m.S:
+            result.append([])
+            for a in m.A:
+                moves = [frozenset((x, sum(p for t, p in m.P[s][a].items() if phase[t] == x)) for x in {phase[t] for t in m.P[s][a]})
+                         for phase in least]
+                result[-1].append((self.classes[s][a], self.table[s][a], m.R[s][a], tuple(moves)))
+        return result
+
+    def action(self, j, s):
+        """a_j(s), or None."""
+        if len(self.played[j][s]) == 1:
+            return min(self.played[j][s])
+        if not self.settled[j][s] or len(self.provoked_classes(j, s)) != 1:
+            return None
+        shown = [t for t in self.model.ball[s] if self.C[j][t][0] in self.played[j][s]]
+        return self.C[j][(min if self.tie == "lowest" else max)(shown)][0]
+
+    def valid(self):
+        m = self.model
+        for Q, U, C in zip(self.Q, self.orbit, self.C):
             for s in m.S:
                 if not U[s] == min(min(Q[s][a] for a in C[t]) for t in m.ball[s]):
                     return False
@@ -176,7 +240,7 @@ class Limit:
                     return False
                 if any(U[s] < Q[s][a] <= U[s] + 2 * self.radius for t in m.ball[s] for a in C[t]):
                     return False
-        return far(table, self.Q[0]) <= self.radius
+        return self.delta <= self.radius and self.reproduced
 
 
 def find_limit(model, tie, most=400, longest=6):
@@ -194,8 +258,8 @@ def find_limit(model, tie, most=400, longest=6):
     while count <= 90:
         tables, pairs = run(model, tie, count + period)
         actions = [[policy[t] for t in attack] for policy, attack in pairs[count:]]
-        limit = Limit(model, orbit_values(model, actions))
-        if limit.valid(tables[count]):
+        limit = Limit(model, orbit_values(model, actions), tables[count], tie)
+        if limit.valid():
             return count, limit
         count += 1 + count // 6
     return 3, None
@@ -280,11 +344,11 @@ def certificate(model, **options):
     return examine(model, **options)[0]
 
 
-def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, repeat=1, with_limit=True, with_beliefs=True,
-            belief_slack=Fraction(0)):
+def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, repeat=1, classes=None, with_limit=True,
+            with_beliefs=True, belief_slack=Fraction(0)):
     """The certificate of a model, and all instances of each claim, the least first.
 
-    `rounds`, `radius`, `repeat` (the orbit, that many times) and `belief_slack` ask for others that are as true.
+    `rounds`, `radius`, `repeat` (the orbit, that many times), `classes` and `belief_slack` ask for others that are as true.
     """
     S, A, g = model.S, model.A, model.g
     Vstar = model.extreme_value([list(A)] * model.n, max)
@@ -303,9 +367,9 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
     N = rounds or N
     tables, all_pairs = run(model, tie, N)
     if limit:
-        limit = Limit(model, limit.orbit * repeat, radius)
-        if not limit.valid(tables[N]):
-            raise ValueError("not a limit after so many rounds, or with this radius")
+        limit = Limit(model, limit.orbit * repeat, tables[N], tie, radius, classes)
+        if not limit.valid():
+            raise ValueError("not a limit after so many rounds, with this radius or with these classes")
     pairs, indices, first_round = [], [], []
     for n, pair in enumerate(all_pairs):
         if pair not in pairs:
@@ -318,9 +382,17 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
     test_value = robust_value(model, test_policy)
 
     # An instance is (at, left, right, whether it can prove a violation).
-    def lipschitz(X, n, L, extra, counts):
-        return [({"n": n, "states": [s, t], "action": a}, abs(X[s][a] - X[t][a]) + extra, L * model.low[s][t], counts)
-                for s, t in model.pairs_of_states() for a in A]
+    def lipschitz(X, n, factor, slack=Fraction(0)):
+        found = []
+        for s, t in model.pairs_of_states():
+            jumps = [[abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)) for u in S] for a in A]
+            reward = max([l_r * model.low[s][t]] + [abs(model.R[s][a] - model.R[t][a]) for a in A])
+            jump = max([l_p * model.low[s][t]] + [max(row) for row in jumps])
+            for a in A:
+                extra = slack * sum(jumps[a]) / 2
+                found.append(({"n": n, "states": [s, t], "action": a}, abs(X[s][a] - X[t][a]) + extra, reward + factor * jump,
+                              extra == 0))
+        return found
 
     def gap(X, n, right, counts):
         return [({"n": n, "states": [s], "action": a}, Qstar[s][a] - X[s][a], right, counts) for s in S for a in A]
@@ -343,16 +415,16 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
     paper_factor, sharp_factor = (1 + g) / (1 - g)**2, 1 / (1 - g)**2
     instances = {}
     if limit:
-        r, k = limit.radius, limit.k
+        delta, k = limit.delta, limit.k
         low, ours = [model.back(V) for V in limit.low], [V and model.back(V) for V in limit.fixed]
         if all(ours) and all(real):
             X = [(back, first_round[i]) for i in range(len(pairs)) for back in (model.back(fixed[i]), model.back(robust[i]))]
             X += [(back, N + j) for j in phases for back in (low[j], ours[j])]
-            instances["lemma-1"] = sum((lipschitz(back, n, L_print, 0, True) for back, n in X), []) or nothing
-        instances["lemma-1-iterates"] = (sum((lipschitz(tables[n], n, L_rep, 0, True) for n in range(N)), [])
-                                         + sum((lipschitz(limit.Q[j], N + j, L_rep, 2 * r, False) for j in phases), [])) or nothing
+            instances["lemma-1"] = sum((lipschitz(back, n, model.n * r_paper / (1 - g)) for back, n in X), []) or nothing
+        X = [(tables[n], n, Fraction(0)) for n in range(N + 1)] + [(limit.Q[j], N + j, 2 * g * delta) for j in phases]
+        instances["lemma-1-iterates"] = sum((lipschitz(Q, n, g * model.n * size / (1 - g), slack) for Q, n, slack in X), []) or nothing
         loss = [(tstar(tables[n]), tables[n + 1], n, Fraction(0), True) for n in range(N)]
-        loss += [(tstar(limit.Q[j]), limit.Q[(j + 1) % k], N + j, 2 * g * r, False) for j in phases]
+        loss += [(tstar(limit.Q[j]), limit.Q[(j + 1) % k], N + j, 2 * g * delta, g * delta == 0) for j in phases]
         instances["lemma-2"] = [({"n": n, "states": [s], "action": a}, abs(X[s][a] - Y[s][a]) + extra, D_print, counts)
                                 for X, Y, n, extra, counts in loss for s in S for a in A]
     instances["lemma-3"] = []
@@ -402,7 +474,7 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
               "pairs": [{"policy": list(policy), "attack": list(attack), "fixed": text(f), "robust": text(w)}
                         for (policy, attack), f, w in zip(pairs, fixed, robust)],
               "rounds": indices,
-              "limit": limit and {"period": limit.k, "radius": text(limit.radius), "orbit": text(limit.orbit),
+              "limit": limit and {"period": limit.k, "radius": text(limit.radius), "classes": limit.classes, "orbit": text(limit.orbit),
                                   "low": text(limit.low), "fixed": text(limit.fixed)},
               "test_time": {"policy": test_policy, "robust": text(test_value)}, "belief_game": game, "claims": claims}
     return result, instances
@@ -452,10 +524,24 @@ def reference():
                      points=[[0, 0], [1, "1/2"], [2, 2]], norm="linf")
     mirror = Model(half, 1, [[1, 1], [0, 0], [1, 1]], [[{0: half, 1: half}] * 2, [{0: 1}, {2: 1}], [{2: half, 1: half}] * 2],
                    points=[[-1], [0], [1]], norm="l1")
-    # With x = 0 the limit ties: min Q(.,0) = min Q(.,1) = 2/3, and the two actions lead to different backups, so it is not decided.
+    # With x = 0 the limit ties: min Q(.,0) = min Q(.,1) = 2/3, and the two actions lead to different backups: classes decide.
     twins, twins_tie = (Model(half, 1, [[1, x], [1, x], [0, 3]],
                               [[{2: 1}, {0: half, 1: half}], [{2: 1}, {0: half, 1: half}], [{0: 1}, {2: 1}]],
                               points=[[0], [0], [1]], norm="l2") for x in ("-1/5", 0))
+    # State 2 is absorbing, its actions are alike and it is in every ball: the least over a ball ties for all actions for ever.
+    # In 0 action 1 is better, but the index decides; with tie = highest it is the other way round.
+    pit = Model("9/10", 2, [[1, 2], [2, "1/2"], [-5, -5]], [[{0: half, 1: half}, {0: 1}], [{0: 1}, {1: half, 2: half}], [{2: 1}, {2: 1}]],
+                points=[[0], [1], [2]], norm="l1")
+    # Two rows of three cells, alike; actions: stay, change the row, right, left. Which row is shown makes no difference.
+    cells = [(row, column) for row in range(2) for column in range(3)]
+    place = {cell: i for i, cell in enumerate(cells)}
+    rows = Model("4/5", 1, [[x] * 4 for x in (0, -1, 2) * 2],
+                 [[{place[to]: Fraction(3, 4), place[0, 0]: Fraction(1, 8), place[1, 0]: Fraction(1, 8)} if to[1] else {place[to]: 1}
+                   for to in ((i, j), (1 - i, j), (i, min(j + 1, 2)), (i, max(j - 1, 0)))] for i, j in cells],
+                 points=cells, norm="l1")
+    # Both actions of 0 are worth 1/2 from Q_3 on, one step and two steps from a reward: that no classes show, and none need to.
+    detour = Model(half, 1, [[0, 0], [1, 1], [0, 0], [2, 2], [0, 0]], sure([1, 2], [4, 4], [3, 3], [4, 4], [4, 4]),
+                   distances=[[0 if s == t else None for t in range(5)] for s in range(5)])
     greedy = Model(0, 1, [[1, 2], [2, 0]], sure([0, 1], [1, 0]), points=[[0], [1]], norm="l1")
     return {
         "one_sided_corrected": certificate(one_sided),
@@ -476,6 +562,11 @@ def reference():
         "twins": certificate(twins),
         "twins_tie": certificate(twins_tie),
         "discount_zero": certificate(greedy),
+        "pit": certificate(pit),
+        "pit_highest": certificate(pit, tie="highest"),
+        "rows": certificate(rows),
+        "rows_highest": certificate(rows, tie="highest"),
+        "detour": certificate(detour),
         "undecided": certificate(chain, rounds=2, with_limit=False, with_beliefs=False),
         "lower_bound": certificate(one_sided, belief_slack=Fraction(1, 8)),
         "random_six": certificate(random_model(1, 6, 2, Fraction(1, 2), 1)),
