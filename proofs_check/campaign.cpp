@@ -1,5 +1,6 @@
 #include <maximin/proofs_check/campaign.hpp>
 
+#include <chrono>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -39,6 +40,16 @@ class Reorder {
   std::map<long, TrialRecord> waiting_;
 };
 
+/// Hands a certificate on with the time since now.
+std::function<void(const Certificate&)> timed(const Campaign& campaign, long trial) {
+  if (!campaign.certified) return {};
+  const auto start = std::chrono::steady_clock::now();
+  return [&campaign, trial, start](const Certificate& certificate) {
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    campaign.certified(trial, certificate, taken.count());
+  };
+}
+
 }  // namespace
 
 DrawnModel draw_trial(const Campaign& campaign, const ModelSource& source, long trial) {
@@ -50,7 +61,7 @@ TrialRecord run_trial(const Campaign& campaign, const DrawnModel& drawn, long tr
   TrialRecord record{trial, drawn.family, {}, drawn.score};
   try {
     record.found = campaign.examination.exact
-                       ? examine_exactly(rationalise(drawn.model), {}, campaign.examination)
+                       ? examine_exactly(rationalise(drawn.model), {}, campaign.examination, timed(campaign, trial))
                        : examine(drawn.model.mdp, make_perturbation(drawn.model), campaign.examination);
   } catch (const BudgetExhausted&) {
     record.found = {};

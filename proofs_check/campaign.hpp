@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <maximin/models/model.hpp>
+#include <maximin/proofs_check/certificate/certificate.hpp>
 #include <maximin/proofs_check/examination.hpp>
 #include <maximin/proofs_check/trial_record.hpp>
 #include <maximin/theory/random.hpp>
@@ -25,12 +26,16 @@ struct DrawnModel {
 using ModelSource = std::function<DrawnModel(Stream&)>;
 
 /// Many models, each examined; trial k is a function of (seed, k) whatever the threads.
+///
+/// `certified` is called with each certificate of an exact campaign and the seconds that it took to make, from several
+/// threads at once.
 struct Campaign {
   std::uint64_t seed = 1;
   long trials = 2000;
   long first = 0;  ///< trials before it are known already (a resumed run)
   int threads = 1;
   ExaminationOptions examination = {};
+  std::function<void(long trial, const Certificate& certificate, double seconds)> certified = {};
 };
 
 /// Takes the records in order of the trials, from one thread at a time. May throw; the campaign then ends, and the sink

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -86,6 +87,32 @@ void check_finished(const Options& options, const std::vector<TrialRecord>& reco
   }
 }
 
+/// Writes the certificates of an exact campaign, and tells in the end how long they took.
+class CertificateFolder {
+ public:
+  explicit CertificateFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  void write(long trial, const Certificate& certificate, double seconds) {
+    apps::write_file(folder_ / fmt::format("trial-{}.json", trial), certificate_json(certificate),
+                     apps::Overwrite::replace);
+    const std::lock_guard lock(mutex_);
+    times_.emplace_back(seconds, trial);
+  }
+
+  void tell() {
+    if (times_.empty()) return;
+    std::sort(times_.begin(), times_.end());
+    apps::note(fmt::format("{} certificates in {}: {:.2g} s each at the median, at most {:.3g} s (trial {})",
+                           times_.size(), folder_.string(), times_[times_.size() / 2].first, times_.back().first,
+                           times_.back().second));
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::mutex mutex_;
+  std::vector<std::pair<double, long>> times_;
+};
+
 /// All records of the campaign, those of the file first; fewer than asked for when interrupted.
 std::vector<TrialRecord> gather(const Options& options, const ModelSource& source, std::optional<TrialFile>& file) {
   Campaign c = campaign(options);
@@ -94,6 +121,10 @@ std::vector<TrialRecord> gather(const Options& options, const ModelSource& sourc
   if (file) records = file->finished();
   check_finished(options, records);
   c.first = static_cast<long>(records.size());
+  CertificateFolder folder(options.certificates);
+  if (!options.certificates.empty()) {
+    c.certified = [&](long trial, const Certificate& made, double seconds) { folder.write(trial, made, seconds); };
+  }
   long violations =
       std::count_if(records.begin(), records.end(), [](const auto& r) { return r.found.any(Verdict::violated); });
   apps::Progress progress("models", c.trials, c.first, options.quiet || options.json);
@@ -106,6 +137,7 @@ std::vector<TrialRecord> gather(const Options& options, const ModelSource& sourc
         progress.advance(fmt::format("{} violations", violations));
       },
       apps::stop_on_interrupt());
+  folder.tell();
   return records;
 }
 

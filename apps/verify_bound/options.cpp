@@ -160,6 +160,13 @@ void declare_output(CLI::App& program, Options& o) {
       ->check(apps::existing_folder())
       ->type_name("DIR")
       ->group(group);
+  program
+      .add_option(
+          "--certificates", o.certificates,
+          "with --exact: write the certificate of each trial K to\nDIR/trial-K.json, and say how long they took")
+      ->check(apps::existing_folder())
+      ->type_name("DIR")
+      ->group(group);
   program.add_flag("--explain", o.explain, "print what each claim states, and its symbols; nothing else")->group(group);
   program.add_flag("--quiet", o.quiet, "no progress bar")->group(group);
 }
@@ -178,8 +185,10 @@ void check_combination(const CLI::App& program, const Options& o) {
     const std::string where = "on random models";
     apps::refuse_given(program, {"--discount"}, where, "--gamma, or --model or --example beside it");
     apps::refuse_given(program, {"--metric", "--reward-model", "--intervals"}, where, "--model or --example beside it");
+    if (!o.certificates.empty() && !is_exact(o)) throw InputError("--certificates: expected --exact beside it");
     if (!o.replay) return;
-    apps::refuse_given(program, {"--trials", "--threads", "--trials-out", "--resume", "--violation-dir"},
+    apps::refuse_given(program,
+                       {"--certificates", "--trials", "--threads", "--trials-out", "--resume", "--violation-dir"},
                        "beside --replay", "it without --replay only");
     return;
   }
@@ -188,7 +197,7 @@ void check_combination(const CLI::App& program, const Options& o) {
   apps::refuse_given(
       program,
       {"--trials", "--seed", "--threads", "--family", "--states", "--actions", "--l-r", "--l-p", "--dimension",
-       "--successors", "--replay", "--trials-out", "--resume", "--save-model", "--violation-dir"},
+       "--successors", "--replay", "--trials-out", "--resume", "--save-model", "--violation-dir", "--certificates"},
       where, "it with random models only");
 }
 

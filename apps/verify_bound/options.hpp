@@ -46,6 +46,7 @@ struct Options {
   bool json = false;
   std::string trials_out, report, save_model;
   std::string violation_dir = ".";
+  std::string certificates;
   bool resume = false;
   bool explain = false;
   bool quiet = false;

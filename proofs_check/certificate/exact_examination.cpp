@@ -86,7 +86,8 @@ Examination examination_of(const Certificate& c) {
 }
 
 Examination examine_exactly(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
-                            const ExaminationOptions& options) {
+                            const ExaminationOptions& options,
+                            const std::function<void(const Certificate&)>& certified) {
   CertifyOptions exact;
   exact.reading = options.reading;
   exact.tie = options.tie;
@@ -96,7 +97,9 @@ Examination examine_exactly(const Model<Rational>& model, const GeometryOverride
   exact.max_positions = options.max_belief_positions;
   exact.stop = options.stop;
   try {
-    return examination_of(certify(model, overrides, exact));
+    const Certificate certificate = certify(model, overrides, exact);
+    if (certified) certified(certificate);
+    return examination_of(certificate);
   } catch (const AssumptionFails& failed) {
     Examination e = all(Verdict::assumption_fails, model, options);
     e.failed_assumption = failed.what();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include <maximin/models/make_perturbation.hpp>
 #include <maximin/models/model.hpp>
 #include <maximin/proofs_check/certificate/certificate.hpp>
@@ -12,8 +14,10 @@ namespace maximin {
 Examination examination_of(const Certificate& certificate);
 
 /// The examination in exact arithmetic. Where Assumption 1 fails, or a model is too large for exact solves, the
-/// verdicts say so. Throws InputError as `certify`, and Interrupted.
+/// verdicts say so. `certified`, if it is one, is called with the certificate. Throws InputError as `certify`, and
+/// Interrupted.
 Examination examine_exactly(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
-                            const ExaminationOptions& options);
+                            const ExaminationOptions& options,
+                            const std::function<void(const Certificate&)>& certified = {});
 
 }  // namespace maximin
