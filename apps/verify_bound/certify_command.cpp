@@ -28,6 +28,10 @@ std::string shown(const Rational& x) {
 
 std::string limit_text(const Certificate& c) {
   const auto rounds = c.rounds.size();
+  if (!c.limit && c.ties_open) {
+    return fmt::format(
+        "Q_n: undetermined: near its orbit choices tie but for differences that vanish ({} exact rounds)", rounds);
+  }
   if (!c.limit) return fmt::format("Q_n: undetermined after {} exact rounds (--max-rounds, --max-period)", rounds);
   const std::string ties = c.limit->all_attained() ? "" : "; choices tie on it that lead to the same backups";
   return c.limit->period == 1

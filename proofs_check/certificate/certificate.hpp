@@ -77,7 +77,8 @@ struct Certificate {
   std::optional<CertifiedBeliefGame> belief_game;
   std::vector<CertifiedClaim> claims;
 
-  // Not written: what a campaign counts.
+  // Not written: what a campaign counts, and why there is no limit.
+  bool ties_open = false;  ///< Q_n came near an orbit on which differences that vanish decide between choices
   State largest_ball = 0;
   bool pessimism_changes_action = false;  ///< maximin and greedy differ in some round, at some observation
 
@@ -88,9 +89,9 @@ struct CertifyOptions {
   Reading reading = Reading::corrected;
   TieBreak tie = TieBreak::lowest_index;
   std::optional<std::set<ClaimId>> only = {};  ///< absent: all
-  long max_rounds = 5'000;                     ///< of exact pessimistic Q-iteration
+  long max_rounds = 2'000;                     ///< of exact pessimistic Q-iteration
   long max_period = 64;
-  long max_bits = 400'000;         ///< of the denominator of Q_n: more cost too much, and the limit is undetermined
+  long max_bits = 100'000;         ///< of the denominator of Q_n: more cost too much, and the limit is undetermined
   long max_positions = 20'000;     ///< reachable (state, belief) pairs; more make F undetermined
   long max_exact_positions = 150;  ///< more have lower bounds in the place of exact values
   const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: ends with Interrupted

@@ -115,7 +115,7 @@ class Certifier {
         last_ = std::move(q);
         return;
       }
-      if (static_cast<long>(msb(q.denominator)) > options_.max_bits) return;
+      if (hopeless_ || static_cast<long>(msb(q.denominator)) > options_.max_bits) return;
     }
   }
 
@@ -201,11 +201,17 @@ class Certifier {
     // An orbit is solved once per rotation of its phases: the one that is found near is the one that is kept.
     const auto [entry, is_new] = orbits_.try_emplace(std::move(last));
     if (is_new) entry->second = find_orbit(mdp_, balls_, entry->first);
+
     off_ = distance(q, entry->second.tables.front());
     if (off_ > entry->second.radius) return false;
     phases_ = settle(mdp_, balls_, entry->second, q, options_.tie);
-    if (!phases_) next_attempt_ = n + 1 + n / 4;  // what is equal for ever may become so later
+    if (!phases_) {
+      next_attempt_ = n + 1 + n / 4;  // what is equal for ever may become so later
+      result_.ties_open = true;
+      hopeless_ = ++failures_[entry->first] >= most_failures;
+    }
     orbit_ = phases_ ? &entry->second : nullptr;
+    if (phases_) result_.ties_open = false;
     return phases_.has_value();
   }
 
@@ -325,6 +331,8 @@ class Certifier {
   }
 
   static constexpr long most_orbit_unknowns = 1'000;
+  /// Differences that vanish in the limit alone decide such ties: no number of rounds would show it.
+  static constexpr int most_failures = 16;
 
   const CertifyOptions& options_;
   ExactGeometry geometry_;
@@ -344,8 +352,10 @@ class Certifier {
   std::map<std::vector<Policy>, Orbit> orbits_;
   const Orbit* orbit_ = nullptr;
   std::optional<SettledPhases> phases_;
-  ScaledTable last_;       // Q_N
-  Rational off_;           // how far Q_N is from the orbit
+  ScaledTable last_;                             // Q_N
+  Rational off_;                                 // how far Q_N is from the orbit
+  std::map<std::vector<Policy>, int> failures_;  // to settle an orbit that Q_n had come near
+  bool hopeless_ = false;
   long next_attempt_ = 0;  // the first round in which settling is tried again
 };
 

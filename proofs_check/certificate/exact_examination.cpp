@@ -92,7 +92,7 @@ Examination examine_exactly(const Model<Rational>& model, const GeometryOverride
   exact.reading = options.reading;
   exact.tie = options.tie;
   exact.only = options.only;
-  exact.max_rounds = options.max_iterations;
+  exact.max_rounds = std::min(options.max_iterations, exact.max_rounds);
   exact.max_period = options.max_period;
   exact.max_positions = options.max_belief_positions;
   exact.stop = options.stop;

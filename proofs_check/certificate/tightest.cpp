@@ -18,19 +18,22 @@ CertifiedClaim Tightest::verdict(ClaimId id, bool exact) const {
 }
 
 Instance largest_difference(const ScaledTable& x, const ScaledTable& y, long n, const Rational& right) {
+  const bool alike = x.denominator == y.denominator;
   std::optional<Integer> largest;
   State at_state = 0;
   Action at_action = 0;
   for (State s = 0; s < x.numerators.rows(); ++s) {
     for (Action a = 0; a < x.numerators.cols(); ++a) {
-      Integer difference = x.numerators(s, a) * y.denominator - y.numerators(s, a) * x.denominator;
+      Integer difference = alike ? Integer(x.numerators(s, a) - y.numerators(s, a))
+                                 : Integer(x.numerators(s, a) * y.denominator - y.numerators(s, a) * x.denominator);
       if (largest && !(difference > *largest)) continue;
       largest = std::move(difference);
       at_state = s;
       at_action = a;
     }
   }
-  return {Rational(*largest, x.denominator * y.denominator), right, n, {at_state}, at_action};
+  const Integer denominator = alike ? x.denominator : Integer(x.denominator * y.denominator);
+  return {Rational(*largest, denominator), right, n, {at_state}, at_action};
 }
 
 namespace {
