@@ -50,8 +50,12 @@ const CLI::App& selected(const CLI::App& app) {
 }
 
 std::string full_name(const CLI::App& app) {
-  const CLI::App& at = selected(app);
-  return &at == &app ? app.get_name() : app.get_name() + " " + at.get_name();
+  std::string name = app.get_name();
+  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+    at = at->get_subcommands().back();
+    name += " " + at->get_name();
+  }
+  return name;
 }
 
 std::vector<std::string> option_names(const CLI::App& app) {
@@ -90,8 +94,9 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   // An unknown first word leaves "a subcommand is required" unsaid: what is wrong is the word.
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr || !app.remaining(true).empty())
     return describe_unexpected(app);
-  if (error.get_name() == "RequiredError" && &selected(app) == &app && !subcommand_names(app).empty())
-    return fmt::format("no command given, expected one of {}", fmt::join(subcommand_names(app), ", "));
+  const auto commands = subcommand_names(selected(app));
+  if (error.get_name() == "RequiredError" && !commands.empty())
+    return fmt::format("no command given, expected one of {}", fmt::join(commands, ", "));
   std::string what = error.what();
   if (error.get_name() != "ArgumentMismatch") return what;
   if (what.find("missing") != std::string::npos) return what.substr(0, what.find(':')) + ": a value is missing";

@@ -17,5 +17,6 @@ void add_learn(CLI::App& app, Task& task);
 void add_convert(CLI::App& app, Task& task);
 void add_info(CLI::App& app, Task& task);
 void add_examples(CLI::App& app, Task& task);
+void add_counterexample(CLI::App& app, Task& task);
 
 }  // namespace maximin::apps

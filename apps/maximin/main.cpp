@@ -28,6 +28,7 @@ int run_maximin(int argc, char** argv) {
   add_convert(app, task);
   add_info(app, task);
   add_examples(app, task);
+  add_counterexample(app, task);
   return run_program(app, argc, argv, [&task] { return task(); });
 }
 

@@ -2,13 +2,14 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import tempfile
 
 from cli import Golden, Refusal, main, model, no_constants, run
 
-COMMANDS = ["solve", "attack", "belief", "simulate", "learn", "convert", "info", "examples"]
+COMMANDS = ["solve", "attack", "belief", "simulate", "learn", "convert", "info", "examples", "counterexample"]
 
 HOPS = ("note: the model says nothing of distances: hops in the transition graph are taken, and eps = 1; "
         "--metric and --eps choose otherwise\n")
@@ -48,6 +49,16 @@ GOLDEN = [
     Golden("convert_cycling.json", ["convert", "cycling.json"]),
     Golden("convert_hops.json", ["convert", "no_geometry.json", "--metric", "hops", "--eps", "2", "--discount", "0.25"],
            stderr="note: discount: 0.25 as asked for, instead of 0.75 in the file\n"),
+    *[Golden("help_counterexample_%s.txt" % c, ["counterexample", c, "--help"]) for c in ("list", "show", "run", "draw", "search")],
+    Golden("counterexample_list.txt", ["counterexample", "list"]),
+    Golden("counterexample_list.json", ["counterexample", "list", "--json"]),
+    Golden("counterexample_show.txt", ["counterexample", "show", "sharper-belief"]),
+    Golden("counterexample_show.json", ["counterexample", "show", "maximin-deadlock", "--json"]),
+    Golden("counterexample_show_model.json", ["counterexample", "show", "sharper-belief", "--model"]),
+    Golden("counterexample_run_all.txt", ["counterexample", "run", "--all"]),
+    Golden("counterexample_run.json", ["counterexample", "run", "contraction", "--json"]),
+    Golden("counterexample_draw.txt", ["counterexample", "draw", "maximin-deadlock", "--dot"]),
+    Golden("counterexample_search.txt", ["counterexample", "search", "stationary-optimum"]),
 ]
 
 
@@ -152,6 +163,19 @@ REFUSALS = [
     usage(["convert", "good.json", "-o", "."], "is a folder"),
     usage(["info", "--json"], "no model given"),
     usage(["examples", "extra"], "extra: unexpected argument"),
+    usage(["counterexample"], "no command given, expected one of list, show, run, draw, search"),
+    usage(["counterexample", "lost"], "lost: no such command, did you mean list?"),
+    usage(["counterexample", "list", "settling"], "settling: unexpected argument"),
+    usage(["counterexample", "show"], "NAME"),
+    usage(["counterexample", "show", "setling"], "did you mean settling?"),
+    usage(["counterexample", "show", "settling", "--model", "--json"], "--model"),
+    usage(["counterexample", "run"], "expected NAME or --all"),
+    usage(["counterexample", "run", "settling", "--all"], "given beside --all"),
+    usage(["counterexample", "draw", "settling", "--dot", "-o", "good.json"], "good.json: exists"),
+    usage(["counterexample", "search", "settling"], "expected stationary-optimum or sharper-belief"),
+    usage(["counterexample", "search", "sharper-belief", "--seconds", "0"], "--seconds: 0, expected a finite number > 0"),
+    usage(["counterexample", "search", "sharper-belief", "--seconds", "0.01"], "allow more --seconds", 3),
+    usage(["counterexample", "search", "sharper-belief", "--seed", "-1"], "--seed: -1"),
     # input
     usage(["solve", "missing.json"], "missing.json"),
     usage(["solve", "."], "."),
@@ -290,6 +314,54 @@ def check_graph(program):
         return [] if ok else ["no drawing: exit code %d, %r" % (result.returncode, text[:100])]
 
 
+def check_counterexample_model(program):
+    """The model that show writes is one that the other commands read, and search finds again."""
+    with tempfile.TemporaryDirectory() as folder:
+        target = os.path.join(folder, "m.json")
+        with open(target, "wb") as f:
+            f.write(run(program, ["counterexample", "show", "stationary-optimum", "--model"]).stdout)
+        solved = run(program, ["solve", target, "--robust", "--json"])
+        shown = json.load(open(target))
+    found = json.loads(run(program, ["counterexample", "search", "stationary-optimum", "--model"]).stdout)
+    same = all(found[key] == shown[key] for key in ("rewards", "transitions", "discount"))
+    return [] if solved.returncode == 0 and json.loads(solved.stdout)["v"] == [2, 0] and same else ["not the same model"]
+
+
+def check_counterexample_search(program):
+    """A seed finds the same model twice, and its check refutes the claim."""
+    first, second = (run(program, ["counterexample", "search", "sharper-belief", "--seed", "1"]) for _ in range(2))
+    ok = first.returncode == 0 and first.stdout == second.stdout and b"sharper-belief: REFUTED" in first.stdout
+    return [] if ok else ["exit code %d, %r" % (first.returncode, first.stdout)]
+
+
+def check_drawing(program):
+    """SVG where dot is installed; without it one line that says what to install, and nothing written."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        target = os.path.join(folder, "g.svg")
+        draw = ["counterexample", "draw", "settling", "-o", target]
+        without = run(program, draw, env={**os.environ, "PATH": folder})
+        if without.returncode != 2 or without.stderr.count(b"\n") != 1 or b"apt-get install graphviz" not in without.stderr:
+            problems.append("without dot: exit code %d, %r" % (without.returncode, without.stderr))
+        for name, script in (("fails", "exit 3"), ("writes", "cat > /dev/null; echo '<svg/>'")):
+            other = os.path.join(folder, name)
+            os.mkdir(other)
+            with open(os.path.join(other, "dot"), "w") as f:
+                f.write("#!/bin/sh\n%s\n" % script)
+            os.chmod(os.path.join(other, "dot"), 0o755)
+        failing = run(program, draw, env={**os.environ, "PATH": os.path.join(folder, "fails")})
+        if failing.returncode != 2 or b"dot: failed" not in failing.stderr or os.path.exists(target):
+            problems.append("dot fails: exit code %d, %r" % (failing.returncode, failing.stderr))
+        drawn = run(program, draw, env={**os.environ, "PATH": os.path.join(folder, "writes") + ":" + os.environ["PATH"]})
+        if drawn.returncode != 0 or open(target).read() != "<svg/>\n":
+            problems.append("dot draws: exit code %d, %r" % (drawn.returncode, drawn.stderr))
+    if shutil.which("dot"):
+        svg = run(program, ["counterexample", "draw", "settling"]).stdout
+        if b"</svg>" not in svg or b"V* = 20" not in svg:
+            problems.append("no SVG: %r" % svg[:200])
+    return problems
+
+
 def check_interrupt(program):
     """SIGINT ends the learning with what is learned so far, as valid JSON."""
     arguments = [program, "learn", "--example", "grid", "--episodes", "100000000", "--json"]
@@ -319,7 +391,7 @@ def check_shared_model(program, path):
 
 
 CHECKS = [check_output_failures, check_convert, check_policy_file, check_numerals, check_largest_seed, check_recurring,
-          check_graph, check_interrupt]
+          check_graph, check_counterexample_model, check_counterexample_search, check_drawing, check_interrupt]
 
 
 if __name__ == "__main__":
