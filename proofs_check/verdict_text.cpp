@@ -97,7 +97,12 @@ std::string witness(const char* name, const LipschitzConstant<double>& c, const 
                      model.action_name(c.action), target);
 }
 
-std::string fate_text(const Examination& e) {
+std::string fate_text(const Examination& e, bool exact) {
+  if (exact && e.fate == Fate::settled)
+    return fmt::format("the policy pair settles, proved from n = {} on", e.iterations);
+  if (exact && e.fate == Fate::cycles) {
+    return fmt::format("the policy pairs cycle with period {}, proved from n = {} on", e.period, e.iterations);
+  }
   if (e.fate == Fate::settled)
     return fmt::format("the policy pair settles at n = {}, seen at n = {}", e.periodic_from, e.iterations);
   if (e.fate == Fate::cycles) {
@@ -181,8 +186,9 @@ std::string verdict_text(std::string_view title, const Model<double>& model, con
   text += fmt::format("  {:<14} {:.6g}   gamma span(R)/(1-gamma): a bound at or above it is vacuous\n\n", "trivial",
                       e.trivial);
   if (!e.failed_assumption.empty()) return text + "ASSUMPTION FAILS: " + e.failed_assumption + "\n";
-  text += fmt::format("Q_n: {}; {} met; limsup gap {}\n\n", fate_text(e), counted(e.pairs, "policy pair"),
-                      e.fate == Fate::undetermined ? "unknown" : fmt::format("{:.6g}", e.gap));
+  text +=
+      fmt::format("Q_n: {}; {} met; limsup gap {}\n\n", fate_text(e, options.exact), counted(e.pairs, "policy pair"),
+                  e.fate == Fate::undetermined ? "unknown" : fmt::format("{:.6g}", e.gap));
   long vacuous = 0, bounds_checked = 0;
   for (const Claim& c : claims()) {
     const Check& check = e.check(c.id);
@@ -196,8 +202,10 @@ std::string verdict_text(std::string_view title, const Model<double>& model, con
       return text + "\nVIOLATED: a claim above fails on this model.\n";
     case Outcome::undetermined:
       return text +
-             "\nUNDETERMINED: a budget ran out before every claim was decided; see --max-iterations, "
-             "--max-period, --max-positions.\n";
+             (options.exact
+                  ? "\nUNDETERMINED: what holds above is proved, a claim is open; verify_bound certify says more.\n"
+                  : "\nUNDETERMINED: a budget ran out before every claim was decided; see --max-iterations, "
+                    "--max-period, --max-positions.\n");
     default:
       return text + fmt::format("\nHOLDS on this model, {}{}\n",
                                 options.exact ? "proved in exact arithmetic" : "in floating point with certified error",

@@ -1,6 +1,7 @@
 #include "certify_command.hpp"
 
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/table.hpp>
+#include <maximin/proofs_check/examination.hpp>
 #include <maximin/proofs_check/trial_record.hpp>
 
 #include "options.hpp"
@@ -87,6 +89,16 @@ nlohmann::ordered_json summary_json(const CertifyCommand& options, const Certifi
   return json;
 }
 
+std::optional<Certificate> certify_unless_interrupted(const Model<Rational>& model,
+                                                      const GeometryOverrides<Rational>& overrides,
+                                                      const CertifyOptions& options) {
+  try {
+    return certify(model, overrides, options);
+  } catch (const Interrupted&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 void declare(CLI::App& command, CertifyCommand& o) {
@@ -132,7 +144,12 @@ int run_certify_command(const CertifyCommand& options) {
     throw InputError(fmt::format("--output: {} exists, expected a new name or --force", options.output));
   }
   const Model<Rational> model = apps::load_exactly(options.model);
-  const Certificate certificate = certify(model, apps::exact_overrides(options.model), asked);
+  const auto made = certify_unless_interrupted(model, apps::exact_overrides(options.model), asked);
+  if (!made) {
+    apps::complain("verify_bound certify", "interrupted; nothing was written");
+    return apps::ExitCode::interrupted;
+  }
+  const Certificate& certificate = *made;
   apps::write_file(options.output, certificate_json(certificate), overwrite);
   const Outcome outcome = outcome_of(certificate);
   if (options.json) {

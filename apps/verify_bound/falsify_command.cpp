@@ -223,7 +223,7 @@ const char* what_is_proved(const Found& f) {
 std::string results_text(const std::vector<Found>& all) {
   apps::Table table;
   table.column("goal", apps::Align::left).column("", apps::Align::left).column("restarts");
-  table.column("highest score", apps::Align::point).column("above").column("on that model", apps::Align::left);
+  table.column("highest score", apps::Align::point).column("hit above").column("on that model", apps::Align::left);
   table.column("file", apps::Align::left);
   for (const Found& f : all) {
     table.row({f.goal->name, f.goal->title, std::to_string(f.restarts), f.model ? apps::number(f.score) : "-",
@@ -308,8 +308,12 @@ int run_falsify_command(const FalsifyCommand& options) {
     if (apps::stop_on_interrupt()) break;
   }
   apps::print(options.json ? apps::json_text(results_json(all)) : results_text(all));
+  const bool complete = all.size() == asked.size() && !apps::stop_on_interrupt() &&
+                        std::all_of(all.begin(), all.end(), [](const Found& f) { return f.model.has_value(); });
+  if (!complete) apps::note("the search ended before every goal had a model: more time (--seconds) may find one");
   const bool violated = std::any_of(all.begin(), all.end(), [](const Found& f) { return f.goal->claim && f.hit(); });
-  return violated ? apps::ExitCode::violated : apps::ExitCode::success;
+  if (violated) return apps::ExitCode::violated;
+  return complete ? apps::ExitCode::success : apps::ExitCode::undetermined;
 }
 
 }  // namespace maximin::verify_bound

@@ -3,6 +3,7 @@
 
 #include <maximin/apps/common/program.hpp>
 #include <maximin/proofs_check/verdict_text.hpp>
+#include <maximin/theory/error.hpp>
 
 #include "campaign_command.hpp"
 #include "certify_command.hpp"
@@ -42,12 +43,24 @@ Examples:
   verify_bound check *.cert.json --json)";
 
 constexpr const char* falsify_examples =
-    R"(Random starts, hill climbing, shrinking. Exit codes: 0 no claim was refuted, 1 one was.
+    R"(Random starts, hill climbing, shrinking. Exit codes: 0 no claim was refuted, 1 one was, 3 the search ended
+before every goal had a model.
 Examples:
   verify_bound falsify                                   a minute for all goals: how tight is each bound?
   verify_bound falsify --goal theorem-1 --reading paper  the printed theorem falls in seconds
   verify_bound falsify --goal settling,sharper-belief --seconds 30
   verify_bound falsify --goal D --seconds 3600 --trials-out night --resume)";
+
+/// An option of the program itself would be ignored by a command.
+void refuse_options_before_a_command(const CLI::App& program) {
+  if (program.get_subcommands().empty()) return;
+  const std::string command = program.get_subcommands().front()->get_name();
+  for (const CLI::Option* option : program.get_options()) {
+    if (option->count() == 0) continue;
+    throw maximin::InputError(option->get_name() + ": has no effect before " + command + ", expected it behind " +
+                              command + ", if at all");
+  }
+}
 
 int run(int argc, char** argv) {
   using namespace maximin;
@@ -71,6 +84,7 @@ int run(int argc, char** argv) {
   falsify_command->footer(falsify_examples);
   verify_bound::declare(*falsify_command, falsify);
   return apps::run_program(program, argc, argv, [&]() -> int {
+    refuse_options_before_a_command(program);
     if (certify_command->parsed()) return verify_bound::run_certify_command(certify);
     if (check_command->parsed()) return verify_bound::run_check_command(check);
     if (falsify_command->parsed()) return verify_bound::run_falsify_command(falsify);

@@ -192,7 +192,9 @@ std::optional<CertifiedBeliefGame> certify_belief_game(const FiniteMdp<Rational>
     game.rewards.push_back(mdp.reward(truth, graph.action(belief)));
     game.branches.push_back(graph.branches(position));
   }
-  const std::vector<double> near = near_values(game);
+  std::vector<double> near = near_values(game);
+  const bool fits = std::all_of(near.begin(), near.end(), [](double w) { return std::isfinite(w); });
+  if (!fits) std::fill(near.begin(), near.end(), 0.0);  // any start will do for exact values
   result.exact = static_cast<long>(game.size()) <= options.max_exact_positions;
   const auto values = result.exact ? exact_values(game, near) : lower_bounds(game, near);
   if (!values) return std::nullopt;

@@ -22,7 +22,7 @@ enum Exit { all_hold = 0, violated = 1, refused = 2, undetermined = 3, internal_
 constexpr const char* notes = R"(Examples:
   check_certificate lake.json              each claim with its verdict and its sides where it is tightest
   check_certificate --json a.json b.json   the same for programs, sides exact
-  verify_bound certify lake.json | check_certificate -
+  check_certificate - < lake.cert.json
 
 Exit codes: 0 all claims hold, 1 a claim is violated, and that is proved, 3 a claim is undetermined,
 2 bad usage, or not a certificate: one line says what is false in it)";

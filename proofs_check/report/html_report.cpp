@@ -56,12 +56,14 @@ class Replay {
   std::string options_;
 };
 
-std::string upper_limit_sentence(const CampaignSummary& s) {
+std::string upper_limit_sentence(const CampaignSummary& s, bool exact) {
   const double limit = 100 * s.violation_upper_limit();
-  return fmt::format(
-      "With 95 percent confidence at most {} percent of models drawn like these violate a claim. The inequalities were "
-      "checked in floating point with certified numerical error; that is evidence and not a proof.",
-      number(limit));
+  return fmt::format("With 95 percent confidence at most {} percent of models drawn like these violate a claim. {}",
+                     number(limit),
+                     exact ? "Each verdict is proved, in exact arithmetic; of other models nothing is."
+                           : "The inequalities were checked in floating point with certified numerical error; that is "
+                             "evidence and not a "
+                             "proof.");
 }
 
 std::string informative_sentence(const CampaignSummary& s) {
@@ -97,7 +99,7 @@ std::string caveats(const CampaignSummary& s, long asked) {
   return text;
 }
 
-std::string verdict(const CampaignSummary& s, long asked, const Replay& replay) {
+std::string verdict(const CampaignSummary& s, long asked, const Replay& replay, bool exact) {
   const std::string rest = caveats(s, asked);
   if (s.trials == 0) return verdict_box("warn", {"Nothing was checked: there is no trial.", rest});
   if (s.violations > 0) {
@@ -118,7 +120,7 @@ std::string verdict(const CampaignSummary& s, long asked, const Replay& replay) 
   const bool clean = outcome(s, s.trials >= asked) == Outcome::holds;
   return verdict_box(clean ? "" : "warn",
                      {fmt::format("No violation on {}.", counted(s.trials, "random model", "random models")),
-                      informative_sentence(s) + " " + upper_limit_sentence(s), rest});
+                      informative_sentence(s) + " " + upper_limit_sentence(s, exact), rest});
 }
 
 std::string campaign_tiles(const CampaignSummary& s) {
@@ -242,7 +244,7 @@ std::string html_report(const Json& configuration, const Records& records, const
                                                                       : count(summary.trials) + " random models");
   std::string body = fmt::format("<h1>{}</h1>\n<p class=\"sub\">A campaign of verify_bound; {}.</p>\n", escape(title),
                                  reading_of(configuration));
-  body += verdict(summary, asked_trials(configuration, summary), replay);
+  body += verdict(summary, asked_trials(configuration, summary), replay, configuration.value("arith", "") == "exact");
   body += campaign_tiles(summary);
   body += violations_section(records, summary, replay);
   body += claims_section(summary, replay);

@@ -37,7 +37,7 @@ std::string informative_sentence(const Examination& e) {
   return fmt::format("Informative, being below the trivial γ span(R)/(1-γ) = {}: {}.", number(e.trivial), telling);
 }
 
-std::string verdict(const Examination& e) {
+std::string verdict(const Examination& e, bool exact) {
   const auto with = [&](Verdict v) { return names_where([&](const Claim& c) { return e.check(c.id).verdict == v; }); };
   if (e.any(Verdict::violated)) {
     return verdict_box("bad", {"Violated on this model: " + with(Verdict::violated) + ".", informative_sentence(e)});
@@ -56,7 +56,8 @@ std::string verdict(const Examination& e) {
   return verdict_box("",
                      {n == 1 ? "The claim holds on this model." : fmt::format("All {} claims hold on this model.", n),
                       informative_sentence(e),
-                      "Checked in floating point with certified numerical error; no proof for other models."});
+                      exact ? "Proved in exact arithmetic, for this model alone."
+                            : "Checked in floating point with certified numerical error; no proof for other models."});
 }
 
 std::string claims_table(const Examination& e) {
@@ -224,7 +225,8 @@ std::string html_report(const Json& configuration, const TrialRecord& record, co
   std::string body =
       fmt::format("<h1>{}</h1>\n<p class=\"sub\">{} states, {} actions, γ = {}, eps = {}; {}.</p>\n", escape(title),
                   count(e.states), count(e.actions), number(e.discount), number(e.eps), reading_of(configuration));
-  body += verdict(e) + sides_section(e) + rounds_section(e, rounds) + claims_table(e) + model_facts(e);
+  body += verdict(e, configuration.value("arith", "") == "exact") + sides_section(e) + rounds_section(e, rounds) +
+          claims_table(e) + model_facts(e);
   return page(title, body + configuration_section(configuration));
 }
 

@@ -19,6 +19,7 @@ GOLDEN = [
     Golden("verify_bound_one_sided_paper.txt", ["--model", "one_sided.json", "--reading", "paper"], code=1),
     Golden("verify_bound_cycling.txt", ["--example", "cycling"]),
     Golden("verify_bound_named.txt", ["slippery_grid.json"]),
+    Golden("verify_bound_tight_e.txt", ["tight_e.json", "--exact", "--claims", "E"]),
     Golden("verify_bound_explain.txt", ["--explain"]),
     *[Golden("verify_bound_help_%s.txt" % c, [c, "--help"]) for c in ("certify", "check", "falsify")],
 ]
@@ -64,6 +65,9 @@ REFUSALS = [
     Refusal(["certify", "--example", "cycling"], 2, "--output"),
     Refusal(["certify", "--example", "cycling", "-o", "there.json"], 2, "there.json exists", {"there.json": "kept"}),
     Refusal(["certify", "m.json", "-o", "c.json"], 4, "Assumption 1", {"m.json": model(points=[[0], [0]], norm="l1", eps=1)}),
+    *[Refusal([*given, *command], 2, "%s: has no effect before %s" % (given[0], command[0]))
+      for given, command in ((["--reading", "paper"], ["certify", "--example", "one-sided", "-o", "z.json"]),
+                             (["--json"], ["check", "m.json"]), (["--seed", "3"], ["falsify", "--seconds", "1"]))],
     Refusal(["check", "absent.json"], 2, "absent.json: cannot be read"),
     Refusal(["check", "bad.json"], 2, "bad.json: $", {"bad.json": "{"}),
     Refusal(["check"], 2, "CERTIFICATE"),
