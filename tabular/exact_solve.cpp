@@ -39,6 +39,11 @@ struct RationalMatrix {
   fmpq_mat_t m;
 };
 
+/// FLINT keeps memory of its own in each thread; it is given back when the thread that used it ends.
+struct FlintOfThisThread {
+  ~FlintOfThisThread() { flint_cleanup(); }
+};
+
 /// The least common denominator of a row of (I - gamma P) x = R.
 Integer denominator_of(const ExactSystem& system, std::size_t i) {
   Integer common = denominator(system.rewards[i]);
@@ -55,6 +60,7 @@ Values<Rational> solve_exactly(const ExactSystem& system) {
   if (n > max_exact_unknowns) {
     throw BudgetExhausted(fmt::format("exact solve: {} unknowns, expected at most {}", n, max_exact_unknowns));
   }
+  thread_local const FlintOfThisThread given_back_at_exit;
   const auto size = static_cast<slong>(n);
   IntegerMatrix matrix(size, size), right(size, 1);
   for (std::size_t i = 0; i < n; ++i) {
