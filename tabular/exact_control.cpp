@@ -8,7 +8,6 @@
 #include <maximin/tabular/scaled.hpp>
 
 namespace maximin::internal {
-namespace {
 
 FiniteMdp<double> rounded(const FiniteMdp<Rational>& mdp) {
   FiniteMdpBuilder<double> builder(mdp.states(), mdp.actions(), static_cast<double>(mdp.discount()));
@@ -22,6 +21,8 @@ FiniteMdp<double> rounded(const FiniteMdp<Rational>& mdp) {
   }
   return std::move(builder).build();
 }
+
+namespace {
 
 /// What floating point finds best; any policy, where the numbers do not fit.
 Policy floating_point_policy(const ControlProblem<Rational>& problem) {

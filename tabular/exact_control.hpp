@@ -5,6 +5,9 @@
 
 namespace maximin::internal {
 
+/// The model in floating point.
+FiniteMdp<double> rounded(const FiniteMdp<Rational>& mdp);
+
 /// Policy iteration in rational numbers: the policy that floating point finds is evaluated exactly, its optimality is
 /// checked exactly, and exact improvement repairs it where the check fails. The error is zero. Throws BudgetExhausted
 /// for more states than `max_exact_unknowns`.
