@@ -14,6 +14,11 @@ namespace maximin {
 /// The norm that turns points into distances (the paper's l_p ball).
 enum class Norm { l1, l2, linf };
 
+/// As model files and command lines write it.
+inline const char* norm_name(Norm norm) {
+  return norm == Norm::l1 ? "l1" : norm == Norm::l2 ? "l2" : "linf";
+}
+
 /// A distance on the states: |x_s - x_t| of the paper. Symmetric, zero from a state to itself, never negative, and
 /// obeys the triangle inequality (the factor 2 eps of Lemma 2 rests on it). May be infinite between states that no path
 /// joins, and zero between distinct states; then the Lipschitz constants say so.
