@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 
 #include <maximin/tabular/control.hpp>
 #include <maximin/tabular/exact_control.hpp>
 #include <maximin/tabular/exact_solve.hpp>
+#include <maximin/tabular/optimal_attack.hpp>
 
 namespace maximin {
 namespace {
@@ -269,21 +271,6 @@ class Settling {
   std::size_t count_ = 0;                     // of classes
 };
 
-/// All actions that the attacker can provoke in s when the agent chooses from `choices`.
-std::vector<std::vector<Action>> provokable(const Perturbation<Rational>& balls,
-                                            const std::vector<std::vector<Action>>& choices) {
-  std::vector<std::vector<Action>> result(choices.size());
-  for (State s = 0; s < balls.states(); ++s) {
-    std::set<Action> actions;
-    for (const State t : balls.ball(s)) {
-      const auto& at_t = choices[static_cast<std::size_t>(t)];
-      actions.insert(at_t.begin(), at_t.end());
-    }
-    result[static_cast<std::size_t>(s)].assign(actions.begin(), actions.end());
-  }
-  return result;
-}
-
 /// a_j(s), the action of the policy pair in every true state, where it is known.
 std::optional<Policy> action_of_pair(const Perturbation<Rational>& balls, const SettledPhases& phases, std::size_t j,
                                      TieBreak tie) {
@@ -348,8 +335,9 @@ CertifiedLimit certify_limit(const FiniteMdp<Rational>& mdp, const Perturbation<
   limit.radius = orbit.radius;
   limit.orbit = orbit.values;
   for (std::size_t j = 0; j < orbit.tables.size(); ++j) {
-    const ControlProblem<Rational> attacker(mdp, ControlProblem<Rational>::Player::minimise,
-                                            provokable(balls, phases.choices[j]));
+    const auto provokable = internal::provokable(
+        balls, [&](State t) { return std::span<const Action>(phases.choices[j][static_cast<std::size_t>(t)]); });
+    const ControlProblem<Rational> attacker(mdp, ControlProblem<Rational>::Player::minimise, provokable);
     limit.low.push_back(internal::iterate_policies(attacker, SolverOptions{}).v);
     const auto policy = action_of_pair(balls, phases, j, tie);
     limit.attained.push_back(phases.unique[j] || orbit.period() == 1);
