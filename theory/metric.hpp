@@ -72,6 +72,12 @@ class Metric {
     return std::visit([&](const auto& m) { return m.distance(s, t); }, form_);
   }
 
+  /// Whether |x_s - x_t| is finite: only distances given outright may not be.
+  bool finite(State s, State t) const {
+    const auto* given = std::get_if<Matrix>(&form_);
+    return given == nullptr || given->distance(s, t) - given->distance(s, t) == Scalar(0);
+  }
+
   /// Whether the metric was made by `discrete`.
   bool is_discrete() const { return std::holds_alternative<Discrete>(form_); }
 

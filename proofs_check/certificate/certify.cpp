@@ -36,7 +36,7 @@ class Certifier {
     result_.reading = options.reading;
     result_.tie = options.tie;
     result_.largest_ball = balls_.largest_ball();
-    result_.constants = exact_constants(mdp_, geometry_);
+    result_.constants = model_constants(mdp_, geometry_);
     refuse_infinite_constants();
   }
 
@@ -46,7 +46,7 @@ class Certifier {
     auto solution = policy_iteration(mdp_, solver);
     result_.optimal = std::move(solution.v);
     scaled_.backup(ScaledValues(result_.optimal), optimal_);
-    result_.l_star = exact_lipschitz_constant(solution.q, geometry_);
+    result_.l_star = lipschitz_constant(solution.q, geometry_);
     set_constants();
     iterate();
     tail();
