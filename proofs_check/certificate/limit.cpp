@@ -298,29 +298,18 @@ std::optional<Policy> action_of_pair(const Perturbation<Rational>& balls, const 
 
 }  // namespace
 
-Orbit find_orbit(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls,
+Orbit find_orbit(const FiniteMdp<Rational>& mdp, const ScaledMdp& scaled, const Perturbation<Rational>& balls,
                  const std::vector<Policy>& composed) {
-  const ScaledMdp scaled(mdp);
   Orbit orbit;
   orbit.values = solve_orbit(mdp, composed);
   LeastGap gaps;
   const std::size_t k = composed.size();
   for (std::size_t j = 0; j < k; ++j) {
-    ScaledTable& q = orbit.tables.emplace_back();
-    scaled.backup(ScaledValues(orbit.values[(j + k - 1) % k]), q);
-    observe_gaps(q, orbit.values[j], balls, gaps);
+    orbit.tables.push_back(scaled.backup(ScaledValues(orbit.values[(j + k - 1) % k])));
+    observe_gaps(orbit.tables.back(), orbit.values[j], balls, gaps);
   }
   orbit.radius = gaps.radius();
   return orbit;
-}
-
-Rational distance(const ScaledTable& q, const ScaledTable& p) {
-  Integer largest(0);
-  for (Eigen::Index i = 0; i < q.numerators.size(); ++i) {
-    const Integer difference = q.numerators.data()[i] * p.denominator - p.numerators.data()[i] * q.denominator;
-    largest = std::max(largest, Integer(abs(difference)));
-  }
-  return {largest, q.denominator * p.denominator};
 }
 
 std::optional<SettledPhases> settle(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls,
