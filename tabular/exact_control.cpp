@@ -91,7 +91,7 @@ CertifiedSolution<Rational> iterate_policies_exactly(const ControlProblem<Ration
   ScaledTable q;
   do {
     solution.v = solve_policy_values_exactly(problem.mdp(), solution.policy);
-    scaled.backup(ScaledValues(solution.v), q);
+    q = scaled.backup(ScaledValues(solution.v));
     ++solution.sweeps;
   } while (improve(problem, q, solution.policy));
   for (State s = 0; s < q.numerators.rows(); ++s) {

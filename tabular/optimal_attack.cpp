@@ -1,6 +1,7 @@
 #include <maximin/tabular/optimal_attack.hpp>
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include <maximin/tabular/control.hpp>
@@ -8,19 +9,6 @@
 
 namespace maximin {
 namespace {
-
-/// The actions that an attacker can provoke in each true state, ascending, each once.
-template <class Scalar>
-std::vector<std::vector<Action>> provokable(const Perturbation<Scalar>& perturbation, const Policy& policy) {
-  std::vector<std::vector<Action>> choices(policy.size());
-  for (State s = 0; s < perturbation.states(); ++s) {
-    auto& list = choices[static_cast<std::size_t>(s)];
-    for (const State t : perturbation.ball(s)) list.push_back(policy[static_cast<std::size_t>(t)]);
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-  return choices;
-}
 
 /// The first state of B(s) that makes pi take the given action.
 template <class Scalar>
@@ -36,8 +24,9 @@ template <class Scalar>
 RobustEvaluation<Scalar> evaluate_against_optimal_attack(const FiniteMdp<Scalar>& mdp,
                                                          const Perturbation<Scalar>& perturbation, const Policy& policy,
                                                          const SolverOptions& options) {
-  const ControlProblem<Scalar> attacker(mdp, ControlProblem<Scalar>::Player::minimise,
-                                        provokable(perturbation, policy));
+  const auto provokable = internal::provokable(
+      perturbation, [&](State t) { return std::span(policy).subspan(static_cast<std::size_t>(t), 1); });
+  const ControlProblem<Scalar> attacker(mdp, ControlProblem<Scalar>::Player::minimise, provokable);
   auto solution = internal::iterate_policies(attacker, options);
   RobustEvaluation<Scalar> result;
   result.q = std::move(solution.q);

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
 #include <maximin/tabular/certified.hpp>
 #include <maximin/theory/finite_mdp.hpp>
 #include <maximin/theory/perturbation.hpp>
@@ -26,5 +30,25 @@ template <class Scalar>
 RobustEvaluation<Scalar> evaluate_against_optimal_attack(const FiniteMdp<Scalar>& mdp,
                                                          const Perturbation<Scalar>& perturbation, const Policy& policy,
                                                          const SolverOptions& options = {});
+
+namespace internal {
+
+/// The actions that an attacker can provoke in each true state, ascending, each once, from an agent that takes any of
+/// choices(t) where it sees t.
+template <class Scalar, class Choices>
+std::vector<std::vector<Action>> provokable(const Perturbation<Scalar>& perturbation, Choices choices) {
+  std::vector<std::vector<Action>> provoked(static_cast<std::size_t>(perturbation.states()));
+  for (State s = 0; s < perturbation.states(); ++s) {
+    auto& list = provoked[static_cast<std::size_t>(s)];
+    for (const State t : perturbation.ball(s)) {
+      for (const Action a : choices(t)) list.push_back(a);
+    }
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return provoked;
+}
+
+}  // namespace internal
 
 }  // namespace maximin

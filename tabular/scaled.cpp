@@ -8,17 +8,16 @@ namespace {
 using boost::multiprecision::denominator;
 using boost::multiprecision::numerator;
 
-/// x as an integer over `common`, a multiple of its denominator.
-Integer over(const Rational& x, const Integer& common) {
-  return numerator(x) * (common / denominator(x));
-}
-
 /// sum += x * y, without a temporary.
 void add_product(Integer& sum, const Integer& x, const Integer& y) {
   mpz_addmul(sum.backend().data(), x.backend().data(), y.backend().data());
 }
 
 }  // namespace
+
+Integer over(const Rational& x, const Integer& common) {
+  return numerator(x) * (common / denominator(x));
+}
 
 ScaledValues::ScaledValues(const Values<Rational>& v) {
   for (const Rational& x : v) denominator = lcm(denominator, boost::multiprecision::denominator(x));
@@ -33,6 +32,25 @@ Values<Rational> ScaledValues::rational() const {
 
 QTable<Rational> ScaledTable::rational() const {
   return numerators.unaryExpr([&](const Integer& x) { return Rational(x, denominator); });
+}
+
+ScaledValues taken(const ScaledTable& q, const Policy& action) {
+  ScaledValues v;
+  v.denominator = q.denominator;
+  for (std::size_t s = 0; s < action.size(); ++s) {
+    v.numerators.push_back(q.numerators(static_cast<Eigen::Index>(s), action[s]));
+  }
+  return v;
+}
+
+ScaledTable difference(const ScaledTable& x, const ScaledTable& y) {
+  if (x.denominator == y.denominator) return {x.numerators - y.numerators, x.denominator};
+  return {x.numerators * y.denominator - y.numerators * x.denominator, x.denominator * y.denominator};
+}
+
+Rational distance(const ScaledTable& x, const ScaledTable& y) {
+  const ScaledTable apart = difference(x, y);
+  return {apart.numerators.cwiseAbs().maxCoeff(), apart.denominator};
 }
 
 ScaledMdp::ScaledMdp(const FiniteMdp<Rational>& mdp) : states_(mdp.states()), actions_(mdp.actions()) {
@@ -59,12 +77,11 @@ ScaledMdp::ScaledMdp(const FiniteMdp<Rational>& mdp) : states_(mdp.states()), ac
   }
 }
 
-void ScaledMdp::backup(const ScaledValues& v, ScaledTable& q) const {
+ScaledTable ScaledMdp::backup(const ScaledValues& v) const {
   const Integer common = lcm(v.denominator, reward_denominator_);
   const Integer widen = common / v.denominator;
   const Integer reward_weight = growth_ * (common / reward_denominator_);
-  q.numerators.resize(states_, actions_);
-  q.denominator = growth_ * common;
+  ScaledTable q{QTable<Integer>(states_, actions_), growth_ * common};
   std::size_t row = 0;
   for (State s = 0; s < states_; ++s) {
     for (Action a = 0; a < actions_; ++a, ++row) {
@@ -77,6 +94,7 @@ void ScaledMdp::backup(const ScaledValues& v, ScaledTable& q) const {
       q.numerators(s, a) = std::move(sum);
     }
   }
+  return q;
 }
 
 }  // namespace maximin

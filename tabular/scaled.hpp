@@ -11,6 +11,9 @@
 /// denominator need none until somebody asks for an entry.
 namespace maximin {
 
+/// x as an integer over `common`, a multiple of its denominator.
+Integer over(const Rational& x, const Integer& common);
+
 /// Values v(s) = numerators[s] / denominator, denominator > 0, not in lowest terms.
 struct ScaledValues {
   std::vector<Integer> numerators;
@@ -33,6 +36,15 @@ struct ScaledTable {
   QTable<Rational> rational() const;
 };
 
+/// s -> q(s, action[s]).
+ScaledValues taken(const ScaledTable& q, const Policy& action);
+
+/// x - y, over their denominator where they share it.
+ScaledTable difference(const ScaledTable& x, const ScaledTable& y);
+
+/// max |x - y|.
+Rational distance(const ScaledTable& x, const ScaledTable& y);
+
 /// A model in integers: probabilities over one denominator D_P, rewards over another, gamma = a/b.
 class ScaledMdp {
  public:
@@ -41,9 +53,9 @@ class ScaledMdp {
   State states() const { return states_; }
   Action actions() const { return actions_; }
 
-  /// q = R + gamma P v, exactly. The denominator of q is that of v, made a multiple of the rewards', times b D_P: from
+  /// R + gamma P v, exactly. Its denominator is that of v, made a multiple of the rewards', times b D_P: from
   /// round to round it grows by the bits of b D_P.
-  void backup(const ScaledValues& v, ScaledTable& q) const;
+  ScaledTable backup(const ScaledValues& v) const;
 
  private:
   struct Entry {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 
 #include <maximin/theory/finite_mdp.hpp>
@@ -93,38 +94,54 @@ RowDifference<Scalar> row_difference(typename FiniteMdp<Scalar>::Row x, typename
 
 }  // namespace internal
 
-/// Lipschitz constant of q(.,a), largest over a. O(|S|^2 |A|).
-template <class Scalar>
-LipschitzConstant<Scalar> lipschitz_constant(const QTable<Scalar>& q, const Metric<Scalar>& metric) {
-  LipschitzConstant<Scalar> constant;
-  for (State s = 0; s < q.rows(); ++s) {
-    for (State t = s + 1; t < q.rows(); ++t) {
-      const Scalar distance = metric.distance(s, t);
-      for (Action a = 0; a < q.cols(); ++a) {
-        Scalar difference = q(s, a) - q(t, a);
-        if (difference < Scalar(0)) difference = -difference;
-        constant.observe(difference, distance, s, t, a);
-      }
+/// Whatever says how far states are apart: a Metric, or bounds on one. Pairs at infinite distance constrain nothing.
+template <class D, class Scalar>
+concept Distances = requires(const D& d, State s, State t) {
+  { d.distance(s, t) } -> std::convertible_to<Scalar>;
+  { d.finite(s, t) } -> std::same_as<bool>;
+};
+
+namespace internal {
+
+/// Calls visit(s, t, distance) for every pair s < t at finite distance.
+template <class Scalar, class Visit>
+void for_each_pair(State states, const Distances<Scalar> auto& distances, Visit visit) {
+  for (State s = 0; s < states; ++s) {
+    for (State t = s + 1; t < states; ++t) {
+      if (distances.finite(s, t)) visit(s, t, Scalar(distances.distance(s, t)));
     }
   }
+}
+
+}  // namespace internal
+
+/// Lipschitz constant of q(.,a), largest over a. O(|S|^2 |A|).
+template <class Scalar>
+LipschitzConstant<Scalar> lipschitz_constant(const QTable<Scalar>& q, const Distances<Scalar> auto& distances) {
+  LipschitzConstant<Scalar> constant;
+  const auto states = static_cast<State>(q.rows());
+  internal::for_each_pair<Scalar>(states, distances, [&](State s, State t, const Scalar& distance) {
+    for (Action a = 0; a < q.cols(); ++a) {
+      Scalar difference = q(s, a) - q(t, a);
+      if (difference < Scalar(0)) difference = -difference;
+      constant.observe(difference, distance, s, t, a);
+    }
+  });
   return constant;
 }
 
-/// All constants of the model under the metric. O(|S|^2 |A| row length).
+/// All constants of the model under the distances. O(|S|^2 |A| row length).
 template <class Scalar>
-ModelConstants<Scalar> model_constants(const FiniteMdp<Scalar>& mdp, const Metric<Scalar>& metric) {
+ModelConstants<Scalar> model_constants(const FiniteMdp<Scalar>& mdp, const Distances<Scalar> auto& distances) {
   ModelConstants<Scalar> c;
-  c.l_r = lipschitz_constant(mdp.rewards(), metric);
-  for (State s = 0; s < mdp.states(); ++s) {
-    for (State t = s + 1; t < mdp.states(); ++t) {
-      const Scalar distance = metric.distance(s, t);
-      for (Action a = 0; a < mdp.actions(); ++a) {
-        const auto d = internal::row_difference<Scalar>(mdp.successors(s, a), mdp.successors(t, a));
-        c.l_p.observe(d.largest, distance, s, t, a, d.at);
-        c.k_tv.observe(d.total_variation, distance, s, t, a);
-      }
+  c.l_r = lipschitz_constant(mdp.rewards(), distances);
+  internal::for_each_pair<Scalar>(mdp.states(), distances, [&](State s, State t, const Scalar& distance) {
+    for (Action a = 0; a < mdp.actions(); ++a) {
+      const auto d = internal::row_difference<Scalar>(mdp.successors(s, a), mdp.successors(t, a));
+      c.l_p.observe(d.largest, distance, s, t, a, d.at);
+      c.k_tv.observe(d.total_variation, distance, s, t, a);
     }
-  }
+  });
   c.r_min = mdp.rewards().minCoeff();
   c.r_max_signed = mdp.rewards().maxCoeff();
   c.r_max = std::max(c.r_max_signed, Scalar(-c.r_min));

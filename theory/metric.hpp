@@ -14,6 +14,11 @@ namespace maximin {
 /// The norm that turns points into distances (the paper's l_p ball).
 enum class Norm { l1, l2, linf };
 
+/// As model files and command lines write it.
+inline const char* norm_name(Norm norm) {
+  return norm == Norm::l1 ? "l1" : norm == Norm::l2 ? "l2" : "linf";
+}
+
 /// A distance on the states: |x_s - x_t| of the paper. Symmetric, zero from a state to itself, never negative, and
 /// obeys the triangle inequality (the factor 2 eps of Lemma 2 rests on it). May be infinite between states that no path
 /// joins, and zero between distinct states; then the Lipschitz constants say so.
@@ -65,6 +70,12 @@ class Metric {
   /// |x_s - x_t|.
   Scalar distance(State s, State t) const {
     return std::visit([&](const auto& m) { return m.distance(s, t); }, form_);
+  }
+
+  /// Whether |x_s - x_t| is finite: only distances given outright may not be.
+  bool finite(State s, State t) const {
+    const auto* given = std::get_if<Matrix>(&form_);
+    return given == nullptr || given->distance(s, t) - given->distance(s, t) == Scalar(0);
   }
 
   /// Whether the metric was made by `discrete`.

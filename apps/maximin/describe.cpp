@@ -13,16 +13,12 @@ namespace maximin::apps {
 
 namespace {
 
-const char* norm_text(Norm norm) {
-  return norm == Norm::l1 ? "l1" : norm == Norm::l2 ? "l2" : "linf";
-}
-
 std::string metric_text(const Problem& problem) {
   using Kind = Geometry<double>::Kind;
   const auto& metric = problem.perturbation.metric();
   switch (problem.metric) {
     case Kind::points:
-      return fmt::format("points in R^{} under {}", metric.points()->cols(), norm_text(metric.norm()));
+      return fmt::format("points in R^{} under {}", metric.points()->cols(), norm_name(metric.norm()));
     case Kind::distances:
       return "the model's distances";
     case Kind::neighbourhoods:

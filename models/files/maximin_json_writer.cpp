@@ -49,10 +49,6 @@ std::string json_rows(const Table& table) {
   return out + "\n  ]";
 }
 
-std::string norm_name(Norm norm) {
-  return norm == Norm::l1 ? "l1" : norm == Norm::l2 ? "l2" : "linf";
-}
-
 template <class Scalar>
 void write_geometry(const Geometry<Scalar>& geometry, std::ostream& out) {
   using Kind = typename Geometry<Scalar>::Kind;

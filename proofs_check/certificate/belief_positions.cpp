@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
+#include <vector>
 
+#include <maximin/tabular/belief_game.hpp>
 #include <maximin/tabular/exact_solve.hpp>
-#include <maximin/theory/policies.hpp>
+#include <maximin/tabular/position_graph.hpp>
 
 namespace maximin {
 namespace {
 
 using Position = std::pair<State, Belief>;
+using Graph = internal::PositionGraph<Rational>;
 
 /// What may follow a position: for each successor state its probability and the positions the attacker can make of it.
 struct Branch {
@@ -20,82 +24,46 @@ struct Branch {
   std::vector<std::size_t> answers;
 };
 
-/// All positions that any attacker can bring about, in the order of a certificate.
-class PositionGraph {
- public:
-  PositionGraph(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls, const QTable<Rational>& q,
-                const CertifyOptions& options)
-      : mdp_(mdp), balls_(balls), q_(q), tie_(options.tie) {
-    std::vector<Position> open;
-    const auto reach = [&](const Position& p) {
-      if (successors_.emplace(p, 0).second) open.push_back(p);
-    };
-    for (State s = 0; s < mdp.states(); ++s) {
-      for (const State t : balls.ball(s)) reach({s, Belief(balls.ball(t).begin(), balls.ball(t).end())});
-    }
-    while (!open.empty() && static_cast<long>(successors_.size()) <= options.max_positions) {
-      const Position p = std::move(open.back());
-      open.pop_back();
-      for_each_answer(p, [&](const Rational&, const std::vector<Position>& answers) {
-        for (const Position& next : answers) reach(next);
-      });
-    }
-    complete_ = open.empty();
-    std::size_t i = 0;
-    for (auto& [position, index] : successors_) index = i++;
-  }
-
-  bool complete() const { return complete_; }
-  const std::map<Position, std::size_t>& positions() const { return successors_; }
-
-  Action action(const Belief& belief) {
-    return belief_action(q_, std::span<const State>(belief), scratch_, MinAggregator{}, tie_);
-  }
-
-  std::vector<Branch> branches(const Position& p) {
-    std::vector<Branch> result;
-    for_each_answer(p, [&](const Rational& probability, const std::vector<Position>& answers) {
-      Branch& branch = result.emplace_back(Branch{probability, static_cast<double>(probability), {}});
-      for (const Position& next : answers) branch.answers.push_back(successors_.at(next));
-    });
-    return result;
-  }
-
- private:
-  template <class Visit>
-  void for_each_answer(const Position& p, Visit visit) {
-    const Action a = action(p.second);
-    Belief predicted, met;
-    belief_successors(mdp_, std::span<const State>(p.second), a, predicted);
-    for (const auto& next : mdp_.successors(p.first, a)) {
-      std::vector<Position> answers;
-      for (const State t : balls_.ball(next.target)) {
-        meet_observation(balls_, predicted, t, met);
-        answers.emplace_back(next.target, met);
-      }
-      std::sort(answers.begin(), answers.end());
-      answers.erase(std::unique(answers.begin(), answers.end()), answers.end());
-      visit(next.probability, answers);
-    }
-  }
-
-  const FiniteMdp<Rational>& mdp_;
-  const Perturbation<Rational>& balls_;
-  const QTable<Rational>& q_;
-  TieBreak tie_;
-  bool complete_ = false;
-  std::map<Position, std::size_t> successors_;  // the index of each position
-  std::vector<Rational> scratch_;
-};
-
 /// The game with its arcs spelt out, in rationals and in floating point.
 struct Game {
   Rational discount;
+  std::vector<Position> positions;  ///< in the order of a certificate: ascending
   std::vector<Rational> rewards;
   std::vector<std::vector<Branch>> branches;
 
   std::size_t size() const { return rewards.size(); }
 };
+
+/// The graph's positions in ascending order.
+std::vector<std::size_t> ascending(const Graph& graph) {
+  const auto& positions = graph.positions();
+  std::vector<std::size_t> order(positions.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    const auto &x = positions[i], &y = positions[j];
+    return x.truth != y.truth ? x.truth < y.truth : graph.belief(x) < graph.belief(y);
+  });
+  return order;
+}
+
+Game game_on(const Graph& graph, const Rational& discount) {
+  const std::vector<std::size_t> order = ascending(graph);
+  std::vector<std::size_t> rank(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = i;
+  Game game{discount, {}, {}, {}};
+  for (const std::size_t i : order) {
+    const Graph::Position& position = graph.positions()[i];
+    game.positions.emplace_back(position.truth, graph.belief(position));
+    game.rewards.push_back(position.reward);
+    auto& branches = game.branches.emplace_back();
+    for (const auto& [probability, answers] : position.branches) {
+      Branch& branch = branches.emplace_back(Branch{probability, static_cast<double>(probability), {}});
+      for (const int k : answers) branch.answers.push_back(rank[static_cast<std::size_t>(k)]);
+      std::sort(branch.answers.begin(), branch.answers.end());
+    }
+  }
+  return game;
+}
 
 /// What the attacker leaves of w where a branch leads.
 template <class Scalar>
@@ -181,16 +149,14 @@ std::optional<std::vector<Rational>> lower_bounds(const Game& game, const std::v
 
 std::optional<CertifiedBeliefGame> certify_belief_game(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,
                                                        const QTable<Rational>& q, const CertifyOptions& options) {
-  PositionGraph graph(mdp, geometry.balls, q, options);
+  const BeliefPolicy policy = maximin_belief_policy(q, options.tie);
+  const Graph graph(mdp, geometry.balls, policy, options.max_positions);
   if (!graph.complete()) return std::nullopt;
+  Game game = game_on(graph, mdp.discount());
   CertifiedBeliefGame result;
-  Game game{mdp.discount(), {}, {}};
-  for (const auto& [position, index] : graph.positions()) {
-    const auto& [truth, belief] = position;
-    result.positions.push_back(position);
+  result.positions = std::move(game.positions);
+  for (const auto& [truth, belief] : result.positions) {
     for (const State m : belief) result.reach = std::max(result.reach, geometry.lower(truth, m));
-    game.rewards.push_back(mdp.reward(truth, graph.action(belief)));
-    game.branches.push_back(graph.branches(position));
   }
   std::vector<double> near = near_values(game);
   const bool fits = std::all_of(near.begin(), near.end(), [](double w) { return std::isfinite(w); });

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <maximin/proofs_check/certificate/certificate.hpp>
+#include <maximin/proofs_check/trial_record.hpp>
 
 namespace maximin {
 namespace {
@@ -38,8 +39,7 @@ Json model_json(const Model<Rational>& model) {
             {"discount", text(mdp.discount())}, {"eps", text(*model.geometry.eps)}};
   if (model.geometry.kind == Kind::points) {
     json["points"] = rows(model.geometry.points, text);
-    const Norm norm = model.geometry.norm;
-    json["norm"] = norm == Norm::l1 ? "l1" : norm == Norm::l2 ? "l2" : "linf";
+    json["norm"] = norm_name(model.geometry.norm);
   } else {
     json["distances"] =
         rows(model.geometry.distances, [](const Rational& d) { return d < 0 ? Json(nullptr) : text(d); });
@@ -114,7 +114,7 @@ std::string certificate_json(const Certificate& c) {
   Json json{{"format", "maximin-certificate"},
             {"version", 1},
             {"model", model_json(c.model)},
-            {"reading", c.reading == Reading::paper ? "paper" : "corrected"},
+            {"reading", to_string(c.reading)},
             {"tie", c.tie == TieBreak::highest_index ? "highest" : "lowest"}};
   json["constants"] = {{"l_r", constant_json(c.constants.l_r)}, {"l_p", constant_json(c.constants.l_p)},
                        {"k", constant_json(c.constants.k_tv)},  {"l_star", constant_json(c.l_star)},

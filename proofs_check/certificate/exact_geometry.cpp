@@ -83,27 +83,6 @@ ExactGeometry exact_geometry(const Model<Rational>& model, const GeometryOverrid
   return by_metric(make_perturbation(model, overrides), std::move(g));
 }
 
-ModelConstants<Rational> exact_constants(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry) {
-  ModelConstants<Rational> c;
-  for (State s = 0; s < mdp.states(); ++s) {
-    for (State t = s + 1; t < mdp.states(); ++t) {
-      if (!geometry.finite(s, t)) continue;
-      const Rational& distance = geometry.upper(s, t);
-      for (Action a = 0; a < mdp.actions(); ++a) {
-        c.l_r.observe(abs(Rational(mdp.reward(s, a) - mdp.reward(t, a))), distance, s, t, a);
-        const auto d = internal::row_difference<Rational>(mdp.successors(s, a), mdp.successors(t, a));
-        c.l_p.observe(d.largest, distance, s, t, a, d.at);
-        c.k_tv.observe(d.total_variation, distance, s, t, a);
-      }
-    }
-  }
-  c.r_min = *std::min_element(mdp.rewards().data(), mdp.rewards().data() + mdp.rewards().size());
-  c.r_max_signed = *std::max_element(mdp.rewards().data(), mdp.rewards().data() + mdp.rewards().size());
-  c.r_max = std::max(c.r_max_signed, Rational(-c.r_min));
-  c.span = c.r_max_signed - c.r_min;
-  return c;
-}
-
 LipschitzReach lipschitz_reach(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,
                                const ModelConstants<Rational>& constants) {
   LipschitzReach reach{geometry.lower * constants.l_r.value, geometry.lower * constants.l_p.value};
@@ -119,19 +98,6 @@ LipschitzReach lipschitz_reach(const FiniteMdp<Rational>& mdp, const ExactGeomet
     }
   }
   return reach;
-}
-
-LipschitzConstant<Rational> exact_lipschitz_constant(const QTable<Rational>& q, const ExactGeometry& geometry) {
-  LipschitzConstant<Rational> c;
-  for (State s = 0; s < q.rows(); ++s) {
-    for (State t = s + 1; t < q.rows(); ++t) {
-      if (!geometry.finite(s, t)) continue;
-      for (Action a = 0; a < q.cols(); ++a) {
-        c.observe(abs(Rational(q(s, a) - q(t, a))), geometry.upper(s, t), s, t, a);
-      }
-    }
-  }
-  return c;
 }
 
 }  // namespace maximin

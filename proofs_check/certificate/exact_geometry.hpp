@@ -18,13 +18,12 @@ struct ExactGeometry {
   Geometry<Rational> geometry;    ///< as a certificate states it: points with a norm, or distances
 
   bool finite(State s, State t) const { return lower(s, t) >= 0; }
+  /// The upper bound: Lipschitz constants by it are never too large.
+  const Rational& distance(State s, State t) const { return upper(s, t); }
 };
 
 /// The geometry that `model` has with the overrides of a command line. Throws InputError as `make_perturbation`.
 ExactGeometry exact_geometry(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides = {});
-
-/// The constants of the model, by upper distances: never too large. Pairs at infinite distance do not count.
-ModelConstants<Rational> exact_constants(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry);
 
 /// l_r d(s,t) and l_p d(s,t) for every pair of states, or a little less: the constant times the lower distance, or what
 /// the pair itself differs by if that is more. |S| x |S|, used for s < t.
@@ -33,8 +32,5 @@ struct LipschitzReach {
 };
 LipschitzReach lipschitz_reach(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,
                                const ModelConstants<Rational>& constants);
-
-/// The Lipschitz constant of a table, by upper distances.
-LipschitzConstant<Rational> exact_lipschitz_constant(const QTable<Rational>& q, const ExactGeometry& geometry);
 
 }  // namespace maximin

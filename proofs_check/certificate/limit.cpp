@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 
 #include <maximin/tabular/control.hpp>
 #include <maximin/tabular/exact_control.hpp>
 #include <maximin/tabular/exact_solve.hpp>
+#include <maximin/tabular/optimal_attack.hpp>
 
 namespace maximin {
 namespace {
@@ -269,21 +271,6 @@ class Settling {
   std::size_t count_ = 0;                     // of classes
 };
 
-/// All actions that the attacker can provoke in s when the agent chooses from `choices`.
-std::vector<std::vector<Action>> provokable(const Perturbation<Rational>& balls,
-                                            const std::vector<std::vector<Action>>& choices) {
-  std::vector<std::vector<Action>> result(choices.size());
-  for (State s = 0; s < balls.states(); ++s) {
-    std::set<Action> actions;
-    for (const State t : balls.ball(s)) {
-      const auto& at_t = choices[static_cast<std::size_t>(t)];
-      actions.insert(at_t.begin(), at_t.end());
-    }
-    result[static_cast<std::size_t>(s)].assign(actions.begin(), actions.end());
-  }
-  return result;
-}
-
 /// a_j(s), the action of the policy pair in every true state, where it is known.
 std::optional<Policy> action_of_pair(const Perturbation<Rational>& balls, const SettledPhases& phases, std::size_t j,
                                      TieBreak tie) {
@@ -311,29 +298,18 @@ std::optional<Policy> action_of_pair(const Perturbation<Rational>& balls, const 
 
 }  // namespace
 
-Orbit find_orbit(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls,
+Orbit find_orbit(const FiniteMdp<Rational>& mdp, const ScaledMdp& scaled, const Perturbation<Rational>& balls,
                  const std::vector<Policy>& composed) {
-  const ScaledMdp scaled(mdp);
   Orbit orbit;
   orbit.values = solve_orbit(mdp, composed);
   LeastGap gaps;
   const std::size_t k = composed.size();
   for (std::size_t j = 0; j < k; ++j) {
-    ScaledTable& q = orbit.tables.emplace_back();
-    scaled.backup(ScaledValues(orbit.values[(j + k - 1) % k]), q);
-    observe_gaps(q, orbit.values[j], balls, gaps);
+    orbit.tables.push_back(scaled.backup(ScaledValues(orbit.values[(j + k - 1) % k])));
+    observe_gaps(orbit.tables.back(), orbit.values[j], balls, gaps);
   }
   orbit.radius = gaps.radius();
   return orbit;
-}
-
-Rational distance(const ScaledTable& q, const ScaledTable& p) {
-  Integer largest(0);
-  for (Eigen::Index i = 0; i < q.numerators.size(); ++i) {
-    const Integer difference = q.numerators.data()[i] * p.denominator - p.numerators.data()[i] * q.denominator;
-    largest = std::max(largest, Integer(abs(difference)));
-  }
-  return {largest, q.denominator * p.denominator};
 }
 
 std::optional<SettledPhases> settle(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls,
@@ -348,8 +324,9 @@ CertifiedLimit certify_limit(const FiniteMdp<Rational>& mdp, const Perturbation<
   limit.radius = orbit.radius;
   limit.orbit = orbit.values;
   for (std::size_t j = 0; j < orbit.tables.size(); ++j) {
-    const ControlProblem<Rational> attacker(mdp, ControlProblem<Rational>::Player::minimise,
-                                            provokable(balls, phases.choices[j]));
+    const auto provokable = internal::provokable(
+        balls, [&](State t) { return std::span<const Action>(phases.choices[j][static_cast<std::size_t>(t)]); });
+    const ControlProblem<Rational> attacker(mdp, ControlProblem<Rational>::Player::minimise, provokable);
     limit.low.push_back(internal::iterate_policies(attacker, SolverOptions{}).v);
     const auto policy = action_of_pair(balls, phases, j, tie);
     limit.attained.push_back(phases.unique[j] || orbit.period() == 1);

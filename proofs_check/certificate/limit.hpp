@@ -20,12 +20,10 @@ struct Orbit {
 };
 
 /// The orbit along which composed[j] = pi_j o omega_j is what is done in phase j, solved exactly. Whether it generates
-/// these policies itself is not looked at. Throws BudgetExhausted when |S| times the period is more than can be solved.
-Orbit find_orbit(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls,
+/// these policies itself is not looked at. `scaled` is the model in integers. Throws BudgetExhausted when |S| times the
+/// period is more than can be solved.
+Orbit find_orbit(const FiniteMdp<Rational>& mdp, const ScaledMdp& scaled, const Perturbation<Rational>& balls,
                  const std::vector<Policy>& composed);
-
-/// max |q - p|.
-Rational distance(const ScaledTable& q, const ScaledTable& p);
 
 /// What is settled for all rounds from one on whose table q lies within the radius of phase 0 of the orbit.
 struct SettledPhases {

@@ -1,5 +1,8 @@
 #include <maximin/proofs_check/certificate/tightest.hpp>
 
+#include <algorithm>
+#include <cstddef>
+
 namespace maximin {
 
 CertifiedClaim Tightest::verdict(ClaimId id, bool exact) const {
@@ -18,31 +21,12 @@ CertifiedClaim Tightest::verdict(ClaimId id, bool exact) const {
 }
 
 Instance largest_difference(const ScaledTable& x, const ScaledTable& y, long n, const Rational& right) {
-  const bool alike = x.denominator == y.denominator;
-  std::optional<Integer> largest;
-  State at_state = 0;
-  Action at_action = 0;
-  for (State s = 0; s < x.numerators.rows(); ++s) {
-    for (Action a = 0; a < x.numerators.cols(); ++a) {
-      Integer difference = alike ? Integer(x.numerators(s, a) - y.numerators(s, a))
-                                 : Integer(x.numerators(s, a) * y.denominator - y.numerators(s, a) * x.denominator);
-      if (largest && !(difference > *largest)) continue;
-      largest = std::move(difference);
-      at_state = s;
-      at_action = a;
-    }
-  }
-  const Integer denominator = alike ? x.denominator : Integer(x.denominator * y.denominator);
-  return {Rational(*largest, denominator), right, n, {at_state}, at_action};
+  const ScaledTable apart = difference(x, y);
+  const Integer* first = apart.numerators.data();
+  const auto at = static_cast<State>(std::max_element(first, first + apart.numerators.size()) - first);
+  const auto actions = static_cast<Action>(apart.numerators.cols());
+  return {Rational(first[at], apart.denominator), right, n, {at / actions}, at % actions};
 }
-
-namespace {
-
-Integer over(const Rational& x, const Integer& common) {
-  return numerator(x) * (common / denominator(x));
-}
-
-}  // namespace
 
 LipschitzCheck::LipschitzCheck(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,
                                const QTable<Rational>& right) {

@@ -65,12 +65,24 @@ TEST(ScaledMdp, BacksUpAsRationalsDo) {
   const auto mdp = rational_model(9, 3, 4, rng);
   Values<Rational> v(9);
   for (State s = 0; s < 9; ++s) v[s] = Rational(rng.integer(-9, 9), rng.integer(1, 9));
-  ScaledTable q;
-  ScaledMdp(mdp).backup(ScaledValues(v), q);
+  const ScaledTable q = ScaledMdp(mdp).backup(ScaledValues(v));
   QTable<Rational> expected;
   backup(mdp, v, expected);
   EXPECT_EQ(q.rational(), expected);
   EXPECT_EQ(ScaledValues(v).rational(), v);
+}
+
+TEST(ScaledTable, DistancesAreThoseOfTheRationals) {
+  QTable<Integer> x(1, 2), y(1, 2);
+  x << 1, 7;
+  y << 4, 1;
+  for (const int denominator : {3, 5}) {  // shared, and not
+    const ScaledTable p{x, 3}, q{y, denominator};
+    EXPECT_EQ(difference(p, q).rational(), p.rational() - q.rational());
+    EXPECT_EQ(distance(p, q), p(0, 1) - q(0, 1));
+    EXPECT_EQ(distance(q, p), distance(p, q));
+  }
+  EXPECT_EQ(difference({x, 3}, {y, 3}).denominator, 3);
 }
 
 TEST(ExactPolicyIteration, SolvesTheOptimalityEquation) {

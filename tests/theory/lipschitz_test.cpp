@@ -94,7 +94,10 @@ TEST(Lipschitz, StatesInfinitelyFarApartAskForNothing) {
   QTable<double> d(3, 3), q(3, 1);
   d << 0, 2, inf, 2, 0, inf, inf, inf, 0;
   q << 0, 1, 1000;
-  const auto c = lipschitz_constant(q, Metric<double>::from_distances(d));
+  const auto metric = Metric<double>::from_distances(d);
+  EXPECT_TRUE(metric.finite(0, 1));
+  EXPECT_FALSE(metric.finite(0, 2));
+  const auto c = lipschitz_constant(q, metric);
   EXPECT_FALSE(c.infinite);
   EXPECT_EQ(c.value, 0.5);
 }
