@@ -103,6 +103,11 @@ json parse_json(std::string_view text, const Limits& limits) {
   if (text.size() > limits.bytes) {
     refuse("$", std::to_string(text.size()) + " bytes, expected at most " + std::to_string(limits.bytes));
   }
+  // JSON has neither; the parser would skip the one, and take the other for the end of the text.
+  if (text.starts_with("\xef\xbb\xbf")) refuse("$", "a byte-order mark, expected one JSON object in UTF-8");
+  if (const std::size_t nul = text.find('\0'); nul != text.npos) {
+    refuse("$", "no JSON at byte " + std::to_string(nul + 1) + ", expected one JSON object in UTF-8");
+  }
   try {
     Watcher watcher;
     return json::parse(text, [&watcher](int depth, json::parse_event_t event, const json& value) {

@@ -326,6 +326,10 @@ class Program(unittest.TestCase):
             self.assertEqual(self.run_on(*contents)[0], code)
         self.assertEqual(self.run_on()[0], 2)
 
+    def test_white_space_is_allowed_around_a_certificate(self):
+        text = json.dumps(REFERENCE["chain_l1"]).encode()
+        self.assertEqual(self.run_on(b" \t\r\n" + text + b" \t\r\n")[0], 0)
+
     def test_table_is_aligned(self):
         _, out, err = self.run_on(REFERENCE["one_sided_paper"])
         lines = out.splitlines()
@@ -346,8 +350,9 @@ class Program(unittest.TestCase):
         self.refused(b"")
         self.refused(b"null", "an object")
         self.refused(b"\xff\xfe{}", "not JSON")
-        self.refused(b"\xef\xbb\xbf" + text)
-        self.refused(text + b"x")
+        for other in (b"x", b"\0", b"\0x", b"\n\0", b"\f", b"\v", b"\xc2\xa0", b"\xef\xbb\xbf", b"\x1a"):
+            self.refused(text + other, "not JSON")
+            self.refused(other + text, "not JSON")
         self.refused(text[:-10])
         self.refused(instead(b'"states": 3', b'"states": 1000000000000000000'), "$.model.states")
         self.refused(instead(b'"states": 3', b'"states": 1' + b"0" * 1000000), "$.model.states")

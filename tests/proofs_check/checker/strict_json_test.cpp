@@ -30,6 +30,19 @@ TEST(StrictJson, WhatIsNoJsonIsRefused) {
   expect_refused("7", "$: 7, expected an object");
 }
 
+TEST(StrictJson, NothingButWhiteSpaceIsAroundIt) {
+  const std::string text = sample_certificates().at("one_sided_paper").dump();
+  EXPECT_EQ(refusal(" \t\r\n" + text + " \t\r\n"), "");
+  expect_refused("\xef\xbb\xbf" + text, "$: a byte-order mark, expected one JSON object");
+  expect_refused(text + '\0', "$: no JSON at byte " + std::to_string(text.size() + 1) + ", expected one JSON object");
+  expect_refused(text + " \n" + '\0' + "more", "$: no JSON at byte " + std::to_string(text.size() + 3));
+  expect_refused('\0' + text, "$: no JSON at byte 1,");
+  for (const char* more : {"x", "\f", "\v", "\xc2\xa0", "\xef\xbb\xbf", "\x1a"}) {
+    EXPECT_NE(refusal(text + more), "") << more;
+    EXPECT_NE(refusal(more + text), "") << more;
+  }
+}
+
 TEST(StrictJson, RepeatedNamesAreRefused) {
   expect_refused(edited("\"version\":1", "\"version\":1,\"version\":1"), "$.model.version: given twice");
   expect_refused(edited("\"radius\":", "\"radius\":\"1\",\"radius\":"), "$.limit.radius: given twice");
