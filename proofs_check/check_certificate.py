@@ -10,6 +10,7 @@ Python 3.9 or later, standard library only. Exact: a table is integers over one 
 
 import json
 import math
+import operator
 import os
 import re
 import sys
@@ -267,18 +268,20 @@ class Model:
     def read_distances(self, node):
         d = [[None if x.value is None else x.number() for x in row.array(self.n)] for row in node.array(self.n)]
         over = math.lcm(*(x.denominator for row in d for x in row if x is not None))
-        scaled = [[None if x is None else int(x * over) for x in row] for row in d]
+        whole = [[None if x is None else x.numerator * (over // x.denominator) for x in row] for row in d]
+        infinite = 1 + 2 * max((x for row in whole for x in row if x is not None), default=0)  # above the sum of any two
+        scaled = [[infinite if x is None else x for x in row] for row in whole]
         for s in range(self.n):
             node.require(d[s][s] == 0, f"[{s}][{s}] is not 0, expected zeros on the diagonal")
             for t in range(self.n):
                 node.require(d[s][t] == d[t][s], f"[{s}][{t}] and [{t}][{s}] differ, expected a symmetric matrix")
                 node.require(d[s][t] is None or d[s][t] >= 0, f"[{s}][{t}] is negative, expected at least 0")
-        for s in range(self.n):
-            for t in range(self.n):
-                if scaled[s][t] is not None:
-                    for u, (x, y) in enumerate(zip(scaled[s], scaled[t])):
-                        if y is not None and (x is None or x > scaled[s][t] + y):
-                            node.wrong(f"[{s}][{u}] is above [{s}][{t}] + [{t}][{u}], expected the triangle inequality")
+        for s, row in enumerate(scaled):
+            for t, other in enumerate(scaled):
+                excess = list(map(operator.sub, row, other))
+                if max(excess) > row[t]:
+                    u = excess.index(max(excess))
+                    node.wrong(f"[{s}][{u}] is above [{s}][{t}] + [{t}][{u}], expected the triangle inequality")
         return d
 
     def set_distances(self, d):
@@ -561,7 +564,7 @@ class Instances:
 
     def __init__(self, model, constants, Vstar, Qstar, rounds, limit, test_value, game):
         self.model, self.Qstar, self.rounds, self.limit, self.N = model, Qstar, rounds, limit, len(rounds.index)
-        self.no_slacks = Table([[0] * model.m] * len(model.pairs), 1)
+        self.tv = common([[model.jump[s, t, a][1] for a in range(model.m)] for s, t in model.pairs])
         g, n = model.g, model.n
         l_r, l_p, size = constants["l_r"], constants["l_p"], constants["size"]
         L_print, L_sound = (l_r + n * l_p * x / (1 - g) for x in (constants["print"], size))
@@ -619,15 +622,17 @@ class Instances:
         m = self.model
         if not m.pairs:
             return Family(None, True, 1, 1, [((), [0], 0)])
-        slacks = common([[slack * m.jump[s, t, a][1] for a in range(m.m)] for s, t in m.pairs]) if slack else self.no_slacks
-        x_scale, slack_scale = slacks.over if added else 1, X.over if added else 0
+        each = slack / self.tv.over  # what a unit of self.tv adds
+        over = math.lcm(X.over, each.denominator) if added else X.over
+        scale, more = over // X.over, int(each * over) if added else 0
+        values = [[x * scale for x in row] for row in X.rows]
 
         def instances():
-            for (s, t), more, (right,) in zip(m.pairs, slacks.rows, rights.rows):
-                yield (s, t), [abs(x - y) * x_scale + z * slack_scale if (z > 0) == added else None
-                               for x, y, z in zip(X.rows[s], X.rows[t], more)], right
+            for (s, t), tv, (right,) in zip(m.pairs, self.tv.rows, rights.rows):
+                yield (s, t), [abs(x - y) + z * more if bool(slack and z) == added else None
+                               for x, y, z in zip(values[s], values[t], tv)], right
 
-        return Family(n, not added, X.over * x_scale, rights.over, instances())
+        return Family(n, not added, over, rights.over, instances())
 
     def gap(self, n, X, right, proves):
         """Q*(s,a) - X(s,a) <= right"""

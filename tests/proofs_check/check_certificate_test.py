@@ -9,6 +9,7 @@ reasons that are listed in ALLOWED.
 
 import contextlib
 import io
+import itertools
 import json
 import os
 import random
@@ -255,6 +256,21 @@ class RefusesWhatIsFalse(unittest.TestCase):
         print(counts, file=sys.stderr)
         self.assertEqual(wrong, [])
         self.assertGreater(counts["refused"], 4000)
+
+    def test_triangle_inequality(self):
+        """Of all matrices of three states those are refused that disobey it as the page states it."""
+        model = REFERENCE["tied_lowest"]["model"]
+        infinity = float("inf")
+        for x, y, z in itertools.product(("0", "1/2", "1", "3/2", "3", None), repeat=3):
+            d = [["0", x, y], [x, "0", z], [y, z, "0"]]
+            value = [[infinity if cell is None else Fraction(cell) for cell in row] for row in d]
+            obeys = all(value[s][u] <= value[s][t] + value[t][u] for s in range(3) for t in range(3) for u in range(3))
+            try:
+                checker.Model(checker.Node(dict(model, distances=d)))
+                self.assertTrue(obeys, d)
+            except checker.NotACertificate as error:
+                self.assertFalse(obeys, d)
+                self.assertRegex(str(error), "[.]distances: .*triangle inequality")
 
     def test_violation_by_values_that_nobody_has(self):
         """In period 2 the attacker of theorem-1 is indifferent somewhere, so `fixed` is null; elsewhere it is not the optimal attacker.
