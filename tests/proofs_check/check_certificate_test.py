@@ -32,8 +32,9 @@ EXPECTED = {
     "cycle_ties_highest": "hhhhhhhhhhh", "cycle_ties_apart": "uhhhhhhhhhh", "chain_l1": "hhhhhhhhhhh", "plane_l2": "hhhhhhhhhhh", "islands": "hhhhhhhhhhh",
     "eps_zero": "hhuhhhhhhhh", "one_state": "hhuhhhhhhhh", "tied_lowest": "hhhhhhhhhhh", "tied_highest": "hhhhhhhhhhh",
     "negative": "hhhhhhhhhhh", "negative_paper": "vhhhhhhhhhh", "mirror": "hhhhhhhhhhh", "twins": "hhhhhhhhhhh",
-    "twins_tie": "hhhhhhhhhhh", "discount_zero": "hhhhhhhhhhh", "undecided": "uuuhuuuuuhu", "lower_bound": "hhhhhhhhhhh",
-    "random_six": "hhhhhhhhhhh"}
+    "twins_tie": "hhhhhhhhhhh", "discount_zero": "hhhhhhhhhhh", "pit": "hhhhhhhhhhh", "pit_highest": "hhhhhhhhhhh",
+    "rows": "hhhhhhhhhhh", "rows_highest": "hhhhhhhhhhh", "detour": "hhuhhhhhhhh", "late": "hhuhhhhhhhh", "undecided": "uuuhuuuuuhu",
+    "lower_bound": "hhhhhhhhhhh", "random_six": "hhhhhhhhhhh"}
 
 CLAIMS = ["lemma-1", "lemma-1-iterates", "lemma-2", "lemma-3", "theorem-1", "A", "B", "C", "D", "E", "F"]
 WORDS = ["l1", "l2", "linf", "corrected", "paper", "lowest", "highest", "holds", "violated", "undetermined", "lemma-1", "A", "F"]
@@ -182,6 +183,28 @@ def container_mutants(value):
     yield None
 
 
+def canonical(classes):
+    """The same partition, numbered as they first occur."""
+    numbers = {}
+    return [[numbers.setdefault(c, len(numbers)) for c in row] for row in classes]
+
+
+def class_mutants(classes):
+    """All merges of two classes, all splits of one entry from its class, all pairs of numbers exchanged; all apart, all one."""
+    count = max(map(max, classes)) + 1
+    for c in range(count):
+        for d in range(c):
+            yield "merged", canonical([[d if x == c else x for x in row] for row in classes])
+            yield "renumbered", [[d if x == c else c if x == d else x for x in row] for row in classes]
+    for s, row in enumerate(classes):
+        for a, c in enumerate(row):
+            if sum(other.count(c) for other in classes) > 1:
+                yield "split", canonical(classes[:s] + [row[:a] + [count] + row[a + 1:]] + classes[s + 1:])
+    yield "split", [[s * len(row) + a for a in range(len(row))] for s, row in enumerate(classes)]
+    yield "merged", [[0] * len(row) for row in classes]
+    yield "renumbered", [[c + 1 for c in row] for row in classes]
+
+
 def mutants(document, rng, most):
     """(place, change, mutant) for at most so many changes of every leaf, object and array; undone when the next is asked for."""
     # The holder stands for what contains the certificate, so that it is changed as a whole as well.
@@ -256,6 +279,61 @@ class RefusesWhatIsFalse(unittest.TestCase):
         print(counts, file=sys.stderr)
         self.assertEqual(wrong, [])
         self.assertGreater(counts["refused"], 4000)
+
+    def test_classes(self):
+        """Of the coarsest classes no two may be merged, and no numbers exchanged; finer ones may be as true."""
+        counts = {}
+        for name, original in REFERENCE.items():
+            if not original["limit"] or name == "cycle_ties_apart":  # its classes are not the coarsest
+                continue
+            document = json.loads(json.dumps(original))
+            for kind, classes in class_mutants(original["limit"]["classes"]):
+                if classes == original["limit"]["classes"]:
+                    continue
+                document["limit"]["classes"] = classes
+                answer = check(document)
+                if isinstance(answer, str):
+                    self.assertIn("$.limit", answer)
+                    reason = "refused"
+                else:
+                    reason = why_true(document, original)
+                    self.assertTrue(kind == "split" and "other classes" in reason, f"{name}: {kind} {classes} is accepted: {reason}")
+                counts[kind, reason] = counts.get((kind, reason), 0) + 1
+        print(counts, file=sys.stderr)
+        self.assertGreater(counts["merged", "refused"], 100)
+        self.assertGreater(counts["split", "refused"], 10)
+
+    def test_classes_decide(self):
+        """With all entries apart, nothing of this is decided: the index of an action is, which radius and values do not show."""
+        for name in ("pit", "twins_tie", "cycle_ties"):
+            document = REFERENCE[name]
+            apart = [[s * len(row) + a for a in range(len(row))] for s, row in enumerate(document["limit"]["classes"])]
+            self.assertIn("$.limit", check(dict(document, limit=dict(document["limit"], classes=apart))), name)
+
+    def test_which_classes_count(self):
+        """States 2 and 3 are pits in every ball; an action is dropped for another that has fewer classes within 2r of the least."""
+        half = Fraction(1, 2)
+
+        def split(of_reward, tie, *actions):
+            """The certificate with entries of state 3 taken from their class."""
+            rows = [[{0: half, 1: half}, {0: 1}], [{0: 1}, {1: half, 2: half}], [{2: 1}] * 2, [{2: 1}] * 2]
+            model = reference.Model("9/10", 2, [[1, 2], [2, "1/2"], [-5, -5], [of_reward] * 2], rows,
+                                    points=[[0, 0], [1, 0], [2, 0], [2, 1]], norm="linf")
+            document = reference.certificate(model, tie=tie)
+            classes = document["limit"]["classes"]
+            for a in actions:
+                classes[3][a] = len(classes) * 2 + a
+            document["limit"]["classes"] = canonical(classes)
+            return document
+
+        for tie, first in (("lowest", 0), ("highest", 1)):
+            for a in (0, 1):
+                answer = check(split(-5, tie, a))
+                self.assertEqual(isinstance(answer, str), a == first, answer)
+        near = split("-49/10", "lowest", 0, 1)
+        self.assertIsInstance(check(near), list)
+        near["limit"]["radius"] = "1/20"
+        self.assertIn("condition 1", check(near))
 
     def test_triangle_inequality(self):
         """Of all matrices of three states those are refused that disobey it as the page states it."""

@@ -27,7 +27,7 @@ def solve_linear(matrix, right):
         for i in range(size):
             if i != column and rows[i][column] != 0:
                 factor = rows[i][column]
-                rows[i] = [x - factor * y for x, y in zip(rows[i], rows[column])]
+                rows[i] = [x - factor * y if y else x for x, y in zip(rows[i], rows[column])]
     return [row[size] for row in rows]
 
 
@@ -379,17 +379,17 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
     test_policy = policy_of(model, Qstar, tie)
     test_value = robust_value(model, test_policy)
 
-    # An instance is (at, left, right, whether it can prove a violation).
-    def jumps(s, t, a):
-        return [abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)) for u in S]
+    jumps = {(s, t, a): [abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)) for u in S]
+             for s, t in model.pairs_of_states() for a in A}
 
+    # An instance is (at, left, right, whether it can prove a violation).
     def lipschitz(X, n, factor, slack):
         found = []
         for s, t in model.pairs_of_states():
             r = max([l_r * model.low[s][t]] + [abs(model.R[s][a] - model.R[t][a]) for a in A])
-            p = max([l_p * model.low[s][t]] + [jump for a in A for jump in jumps(s, t, a)])
+            p = max([l_p * model.low[s][t]] + [jump for a in A for jump in jumps[s, t, a]])
             for a in A:
-                added = slack * sum(jumps(s, t, a)) / 2
+                added = slack * sum(jumps[s, t, a]) / 2 if slack else 0
                 found.append(({"n": n, "states": [s, t], "action": a}, abs(X[s][a] - X[t][a]) + added, r + factor * p, added == 0))
         return found
 
@@ -528,6 +528,22 @@ def reference():
     twins, twins_tie = (Model(half, 1, [[1, x], [1, x], [0, 3]],
                               [[{2: 1}, {0: half, 1: half}], [{2: 1}, {0: half, 1: half}], [{0: 1}, {2: 1}]],
                               points=[[0], [0], [1]], norm="l2") for x in ("-1/5", 0))
+    # State 2 is absorbing, its actions are alike and it is in every ball: the least over a ball ties for all actions for ever.
+    # In 0 action 1 is better, but the index decides; with tie = highest it is the other way round.
+    pit = Model("9/10", 2, [[1, 2], [2, "1/2"], [-5, -5]], [[{0: half, 1: half}, {0: 1}], [{0: 1}, {1: half, 2: half}], [{2: 1}, {2: 1}]],
+                points=[[0], [1], [2]], norm="l1")
+    # Two rows of three cells, alike; actions: stay, change the row, right, left. Which row is shown makes no difference.
+    cells = [(row, column) for row in range(2) for column in range(3)]
+    place = {cell: i for i, cell in enumerate(cells)}
+    rows = Model("4/5", 1, [[x] * 4 for x in (0, -1, 2) * 2],
+                 [[{place[to]: Fraction(3, 4), place[0, 0]: Fraction(1, 8), place[1, 0]: Fraction(1, 8)} if to[1] else {place[to]: 1}
+                   for to in ((i, j), (1 - i, j), (i, min(j + 1, 2)), (i, max(j - 1, 0)))] for i, j in cells],
+                 points=cells, norm="l1")
+    # Both actions of 0 are worth 1/2 from Q_3 on, one step and two steps from a reward: that no classes show, and none need to.
+    detour = Model(half, 1, [[0, 0], [1, 1], [0, 0], [2, 2], [0, 0]], sure([1, 2], [4, 4], [3, 3], [4, 4], [4, 4]),
+                   distances=[[0 if s == t else None for t in range(5)] for s in range(5)])
+    # (0,0) and (1,0) have the same reward and stay where they are, but in round 0 action 1 is better in 0: no one class for ever.
+    late = Model(half, 0, [[1, "3/2"], [1, 0], [0, 0]], sure([0, 2], [1, 2], [2, 2]), points=[[0], [1], [2]], norm="l1")
     greedy = Model(0, 1, [[1, 2], [2, 0]], sure([0, 1], [1, 0]), points=[[0], [1]], norm="l1")
     return {
         "one_sided_corrected": certificate(one_sided),
@@ -549,6 +565,12 @@ def reference():
         "twins": certificate(twins),
         "twins_tie": certificate(twins_tie),
         "discount_zero": certificate(greedy),
+        "pit": certificate(pit),
+        "pit_highest": certificate(pit, tie="highest"),
+        "rows": certificate(rows),
+        "rows_highest": certificate(rows, tie="highest"),
+        "detour": certificate(detour),
+        "late": certificate(late),
         "undecided": certificate(chain, rounds=2, with_limit=False, with_beliefs=False),
         "lower_bound": certificate(one_sided, belief_slack=Fraction(1, 8)),
         "random_six": certificate(random_model(1, 6, 2, Fraction(1, 2), 1)),
