@@ -578,7 +578,7 @@ def reference():
 
 
 def main():
-    if len(sys.argv) != 2:
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         sys.exit("usage: reference_certificates.py OUTDIR")
     os.makedirs(sys.argv[1], exist_ok=True)
     for name, contents in reference().items():
