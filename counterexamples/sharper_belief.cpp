@@ -45,19 +45,19 @@ Values<Rational> worth_on_ball(const Model<Rational>& model, const ExactGeometry
                                TieBreak tie) {
   Policy policy;
   std::vector<Rational> scratch;
-  maximin_policy(q, geometry.balls, policy, scratch, MinAggregator{}, tie);
-  return evaluate_against_optimal_attack(model.mdp, geometry.balls, policy).v;
+  maximin_policy(q, geometry.balls(), policy, scratch, MinAggregator{}, tie);
+  return evaluate_against_optimal_attack(model.mdp, geometry.balls(), policy).v;
 }
 
 Worths worths(const Model<Rational>& model, TieBreak tie) {
-  const ExactGeometry geometry = exact_geometry(model);
+  const ExactGeometry geometry(model);
   SolverOptions solver;
   solver.tie = tie;
   const QTable<Rational> q = policy_iteration(model.mdp, solver).q;
   const auto game = certify_belief_game(model.mdp, geometry, q, {.tie = tie});
   if (!game || !game->exact)
     throw BudgetExhausted("sharper-belief: too many beliefs for exact values, expected a smaller model");
-  return {worth_on_ball(model, geometry, q, tie), start_values(*game, geometry.balls)};
+  return {worth_on_ball(model, geometry, q, tie), start_values(*game, geometry.balls())};
 }
 
 /// The state from which the exact belief loses most.

@@ -29,7 +29,11 @@ class BeliefGame {
  public:
   BeliefGame(const FiniteMdp<Scalar>& mdp, const Perturbation<Scalar>& perturbation, const BeliefPolicy& policy,
              long max_positions)
-      : mdp_(mdp), perturbation_(perturbation), graph_(mdp, perturbation, policy, max_positions) {
+      : mdp_(mdp),
+        perturbation_(perturbation),
+        graph_(
+            mdp, perturbation, [&](std::span<const State> belief) { return std::vector{policy(belief)}; },
+            max_positions) {
     if (graph_.complete()) return;
     throw BudgetExhausted(
         fmt::format("belief game: more than {} reachable (state, belief) pairs; allow more or take "
@@ -42,9 +46,10 @@ class BeliefGame {
     tw.resize(w.size());
     Eigen::Index i = 0;
     for (const auto& position : graph_.positions()) {
+      const auto& move = position.moves.front();
       Scalar sum(0);
-      for (const auto& branch : position.branches) sum += branch.probability * worst(w, branch.answers);
-      tw[i++] = position.reward + mdp_.discount() * sum;
+      for (const auto& branch : move.branches) sum += branch.probability * worst(w, branch.answers);
+      tw[i++] = move.reward + mdp_.discount() * sum;
     }
   }
 

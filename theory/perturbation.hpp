@@ -35,17 +35,28 @@ class Perturbation {
   /// For an inexact scalar a state counts as inside when its distance exceeds eps by rounding only (a relative 1e-12),
   /// so that points 0.1 apart on a grid are neighbours at eps = 0.1. `radius()` tells the largest distance inside a
   /// ball, and bounds are computed with it: they stay true.
-  Perturbation(Metric<Scalar> metric, Scalar eps) : metric_(std::move(metric)), eps_(eps), radius_(eps) {
-    if (!(eps >= Scalar(0)) || !(eps - eps == Scalar(0)))
-      throw InputError("eps: negative or not finite, expected eps >= 0");
+  Perturbation(Metric<Scalar> metric, Scalar eps) : Perturbation(std::move(metric), eps, Empty{}) {
     Scalar limit = eps_;
     if constexpr (!is_exact_v<Scalar>) limit = eps_ * Scalar(1 + 1e-12);
-    begin_.push_back(0);
     if (metric_.is_discrete()) {
       fill_discrete(limit);
     } else {
-      fill(limit);
+      fill([&](State s, State t) {
+        const Scalar d = metric_.distance(s, t);
+        if (!(d <= limit) && s != t) return false;
+        if (d > radius_) radius_ = d;
+        return true;
+      });
     }
+  }
+
+  /// The same balls, where the caller decides whether t is in B(s): for distances that the scalar cannot express, such
+  /// as roots. `inside` must be symmetric and hold for s = t.
+  template <class Inside>
+  static Perturbation decided_by(Metric<Scalar> metric, Scalar eps, Inside inside) {
+    Perturbation balls(std::move(metric), eps, Empty{});
+    balls.fill(inside);
+    return balls;
   }
 
   /// Balls given outright: lists[s] holds the states of B(s) in any order. The metric is then the number of balls to
@@ -88,7 +99,15 @@ class Perturbation {
   }
 
  private:
-  void fill(const Scalar& limit) {
+  struct Empty {};
+  Perturbation(Metric<Scalar> metric, Scalar eps, Empty) : metric_(std::move(metric)), eps_(eps), radius_(eps) {
+    if (!(eps >= Scalar(0)) || !(eps - eps == Scalar(0)))
+      throw InputError("eps: negative or not finite, expected eps >= 0");
+    begin_.push_back(0);
+  }
+
+  template <class Inside>
+  void fill(Inside inside) {
     const auto n = static_cast<std::size_t>(metric_.states());
     if (n > max_pairs / n) {
       throw InputError("metric: " + std::to_string(n) + " states have more than " + std::to_string(max_pairs) +
@@ -96,10 +115,7 @@ class Perturbation {
     }
     for (State s = 0; s < metric_.states(); ++s) {
       for (State t = 0; t < metric_.states(); ++t) {
-        const Scalar d = metric_.distance(s, t);
-        if (!(d <= limit) && s != t) continue;
-        neighbours_.push_back(t);
-        if (d > radius_) radius_ = d;
+        if (inside(s, t)) neighbours_.push_back(t);
       }
       require_members(neighbours_.size());
       begin_.push_back(neighbours_.size());

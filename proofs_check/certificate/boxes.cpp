@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <maximin/tabular/exact_control.hpp>
+#include <maximin/tabular/optimal_attack.hpp>
 #include <maximin/theory/bellman.hpp>
 
 namespace maximin {
@@ -43,6 +44,12 @@ std::pair<Scalar, Scalar> attacked(const TableBox<Scalar>& q, const Choices& cho
     if (!high || greatest < *high) high = std::move(greatest);
   }
   return {std::move(low), *std::move(high)};
+}
+
+/// All that an attacker can provoke in each true state: the union of the choices at t, t in B(s).
+Choices provokable(const Perturbation<Rational>& balls, const Choices& choices) {
+  return internal::provokable(
+      balls, [&](State t) -> const std::vector<Action>& { return choices[static_cast<std::size_t>(t)]; });
 }
 
 double largest_value(const FiniteMdp<Rational>& mdp) {
@@ -88,20 +95,6 @@ Choices candidates(const TableBox<Scalar>& q, const Perturbation<Rational>& ball
 
 template std::vector<Action> candidates(const TableBox<Integer>&, std::span<const State>, TieBreak);
 template Choices candidates(const TableBox<Integer>&, const Perturbation<Rational>&, TieBreak);
-
-Choices provokable(const Perturbation<Rational>& balls, const Choices& choices) {
-  Choices result(choices.size());
-  for (State s = 0; s < balls.states(); ++s) {
-    auto& list = result[static_cast<std::size_t>(s)];
-    for (const State t : balls.ball(s)) {
-      const auto& at_t = choices[static_cast<std::size_t>(t)];
-      list.insert(list.end(), at_t.begin(), at_t.end());
-    }
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-  return result;
-}
 
 // ---- The grid ----
 
@@ -155,9 +148,7 @@ RoundBox Boxes::first_round() const {
 }
 
 RoundBox Boxes::round_after(const ValueBox& passed) const {
-  ScaledTable low, high;
-  scaled_.backup(passed.low, low);
-  scaled_.backup(passed.high, high);
+  ScaledTable low = scaled_.backup(passed.low), high = scaled_.backup(passed.high);
   RoundBox round;
   round.denominator = std::move(low.denominator);  // and of high: both depend on the grid's alone
   round.q = {std::move(low.numerators), std::move(high.numerators)};
@@ -194,8 +185,7 @@ ScaledValues Boxes::enclose(Player player, const Choices& choices, Side side) co
   for (const double x : near_values(player, choices)) v.numerators.push_back(below ? grid_.down(x) : grid_.up(x));
 
   // V - c <= T(V - c) as soon as max (V - TV) <= (1-gamma) c; and the same upwards.
-  ScaledTable q;
-  scaled_.backup(v, q);
+  const ScaledTable q = scaled_.backup(v);
   const Integer widen = q.denominator / v.denominator;
   Integer worst(0);
   for (State s = 0; s < mdp_.states(); ++s) {
@@ -222,9 +212,12 @@ std::vector<double> Boxes::near_values(Player player, const Choices& choices) co
   return std::vector<double>(static_cast<std::size_t>(mdp_.states()), 0.0);
 }
 
+ScaledValues Boxes::enclose_robust(const Choices& choices) const {
+  return enclose(Player::minimise, provokable(balls_, choices), Side::below);
+}
+
 PairBox Boxes::enclose_pair(const Choices& choices, const Choices& provoked) const {
-  return {enclose(Player::minimise, provokable(balls_, choices), Side::below),
-          enclose(Player::maximise, provoked, Side::above)};
+  return {enclose_robust(choices), enclose(Player::maximise, provoked, Side::above)};
 }
 
 ValueBox Boxes::enclose_optimal() const {
@@ -265,7 +258,7 @@ Boxes::Rounded Boxes::widened_image(const Rounded& box, double margin) const {
   return image;
 }
 
-std::optional<std::vector<RoundBox>> Boxes::find_invariant(const ValueBox& last, long period) const {
+std::optional<BoxLimit> Boxes::limit_after(const ValueBox& last, long period) const {
   constexpr int most_sweeps = 20'000;
   const double gamma = static_cast<double>(mdp_.discount()), size = largest_value(mdp_);
   const double margin = size * std::max(1e-10 * (1 - gamma), 1e-13);
@@ -288,7 +281,7 @@ std::optional<std::vector<RoundBox>> Boxes::find_invariant(const ValueBox& last,
 }
 
 /// The boxes on the grid, if they are found to be invariant in exact arithmetic.
-std::optional<std::vector<RoundBox>> Boxes::verified(const std::vector<Rounded>& phases, const ValueBox& last) const {
+std::optional<BoxLimit> Boxes::verified(const std::vector<Rounded>& phases, const ValueBox& last) const {
   const auto inside = [](const ValueBox& inner, const ValueBox& outer) {
     const auto& [low, high] = inner;
     return std::equal(outer.low.numerators.begin(), outer.low.numerators.end(), low.numerators.begin(),
@@ -299,14 +292,15 @@ std::optional<std::vector<RoundBox>> Boxes::verified(const std::vector<Rounded>&
   std::vector<ValueBox> boxes;
   for (const Rounded& phase : phases) boxes.push_back(on_grid(phase));
   if (!inside(last, boxes.back())) return std::nullopt;
-  std::vector<RoundBox> rounds;
+  BoxLimit limit;
   for (std::size_t j = 0; j < boxes.size(); ++j) {
-    RoundBox& round = rounds.emplace_back(round_after(boxes[j == 0 ? boxes.size() - 1 : j - 1]));
+    RoundBox& round = limit.phases.emplace_back(round_after(boxes[j == 0 ? boxes.size() - 1 : j - 1]));
     if (!inside(round.passed, boxes[j])) return std::nullopt;
     round.passed = boxes[j];
     find_provoked(round);
   }
-  return rounds;
+  for (const RoundBox& round : limit.phases) limit.pairs.push_back(enclose_pair(round.choices, round.provoked));
+  return limit;
 }
 
 ValueBox Boxes::on_grid(const Rounded& box) const {

@@ -32,9 +32,6 @@ std::vector<Action> candidates(const TableBox<Scalar>& q, std::span<const State>
 template <class Scalar>
 Choices candidates(const TableBox<Scalar>& q, const Perturbation<Rational>& balls, TieBreak tie);
 
-/// All that an attacker can provoke in each true state: the union of the choices at t, t in B(s).
-Choices provokable(const Perturbation<Rational>& balls, const Choices& choices);
-
 /// Numbers with `bits` binary places: where bounds are rounded to, outwards, so that they stay short.
 class Grid {
  public:
@@ -74,6 +71,12 @@ struct PairBox {
   ScaledValues below, above;
 };
 
+/// What is known of all rounds n >= N, in phases (n-N) mod their number: boxes that Q_n does not leave.
+struct BoxLimit {
+  std::vector<RoundBox> phases;
+  std::vector<PairBox> pairs;  ///< by phase
+};
+
 /// One model's enclosures.
 class Boxes {
  public:
@@ -93,6 +96,8 @@ class Boxes {
   /// Values V on the grid with V <= TV (below) or V >= TV (above), T the Bellman operator of a player who picks among
   /// choices[s] in true state s. They enclose its fixed point, as closely as floating point finds it.
   ScaledValues enclose(Player player, const Choices& choices, Side side) const;
+  /// Values below those of any policy of these choices against its optimal attacker.
+  ScaledValues enclose_robust(const Choices& choices) const;
   PairBox enclose_pair(const Choices& choices, const Choices& provoked) const;
 
   /// Bounds on V*.
@@ -101,9 +106,9 @@ class Boxes {
   /// The numbers of the grid next to x.
   ValueBox on_grid(const ScaledValues& x) const;
 
-  /// Boxes u_j <= x_n <= w_j that hold for all rounds n >= N, j = (n-N) mod `period`, from what is known of x_{N-1}.
-  /// Nothing where floating point finds none, or finds them too slowly.
-  std::optional<std::vector<RoundBox>> find_invariant(const ValueBox& last, long period) const;
+  /// The rounds n >= N in `period` phases, from what is known of x_{N-1}. Nothing where floating point finds no boxes,
+  /// or finds them too slowly.
+  std::optional<BoxLimit> limit_after(const ValueBox& last, long period) const;
 
  private:
   struct Rounded;  // boxes in floating point
@@ -112,7 +117,7 @@ class Boxes {
   void find_provoked(RoundBox& round) const;
   std::vector<double> near_values(Player player, const Choices& choices) const;
   ValueBox on_grid(const Rounded& box) const;
-  std::optional<std::vector<RoundBox>> verified(const std::vector<Rounded>& phases, const ValueBox& last) const;
+  std::optional<BoxLimit> verified(const std::vector<Rounded>& phases, const ValueBox& last) const;
   Rounded widened_image(const Rounded& box, double margin) const;
 
   const FiniteMdp<Rational>& mdp_;

@@ -10,6 +10,7 @@
 
 #include <maximin/models/make_perturbation.hpp>
 #include <maximin/models/model.hpp>
+#include <maximin/proofs_check/certificate/boxes.hpp>
 #include <maximin/proofs_check/check.hpp>
 #include <maximin/proofs_check/claims.hpp>
 #include <maximin/tabular/belief_update.hpp>
@@ -72,6 +73,7 @@ struct Certificate {
   std::vector<CertifiedPair> pairs;
   std::vector<int> rounds;  ///< index into pairs by n
   std::optional<CertifiedLimit> limit;
+  std::optional<BoxLimit> boxes;  ///< in the place of the limit, where it is not decided
   Policy test_time_policy;
   Values<Rational> test_time_robust;
   std::optional<CertifiedBeliefGame> belief_game;
@@ -79,6 +81,7 @@ struct Certificate {
 
   // Not written: what a campaign counts, and why there is no limit.
   bool ties_open = false;  ///< Q_n came near an orbit on which differences that vanish decide between choices
+  Rational boxes_gap;      ///< max over the boxes of Q* less `below`
   State largest_ball = 0;
   bool pessimism_changes_action = false;  ///< maximin and greedy differ in some round, at some observation
 
@@ -91,9 +94,11 @@ struct CertifyOptions {
   std::optional<std::set<ClaimId>> only = {};  ///< absent: all
   long max_rounds = 2'000;                     ///< of exact pessimistic Q-iteration
   long max_period = 64;
+  long rounds_before_boxes = 500;  ///< without an orbit, boxes are tried after these, twice these, ...
   long max_bits = 100'000;         ///< of the denominator of Q_n: more cost too much, and the limit is undetermined
-  long max_positions = 20'000;     ///< reachable (state, belief) pairs; more make F undetermined
-  long max_exact_positions = 150;  ///< more have lower bounds in the place of exact values
+  long max_positions = 20'000;   ///< (state, belief) pairs of claim F that are listed; others have a value that is sure
+  long max_pair_states = 1'000;  ///< Lemma 1 looks at pairs of states; of more states it is undetermined
+  long max_exact_positions = 150;           ///< more have lower bounds in the place of exact values
   const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: ends with Interrupted
 
   bool wants(ClaimId id) const { return !only || only->contains(id); }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <maximin/proofs_check/certificate/bounds_certificate.hpp>
 #include <maximin/proofs_check/certificate/certificate.hpp>
 #include <maximin/proofs_check/trial_record.hpp>
 
@@ -40,6 +41,8 @@ Json model_json(const Model<Rational>& model) {
   if (model.geometry.kind == Kind::points) {
     json["points"] = rows(model.geometry.points, text);
     json["norm"] = norm_name(model.geometry.norm);
+  } else if (model.geometry.kind == Kind::hops || model.geometry.kind == Kind::discrete) {
+    json["metric"] = model.geometry.kind == Kind::hops ? "hops" : "discrete";
   } else {
     json["distances"] =
         rows(model.geometry.distances, [](const Rational& d) { return d < 0 ? Json(nullptr) : text(d); });
@@ -61,6 +64,25 @@ Json constant_json(const LipschitzConstant<Rational>& c) {
     if (c.target >= 0) at.push_back(c.target);
   }
   return {{"value", text(c.value)}, {"at", std::move(at)}};
+}
+
+Json list(const ScaledValues& v) {
+  Json out = Json::array();
+  for (State s = 0; s < static_cast<State>(v.numerators.size()); ++s) out.push_back(text(v[s]));
+  return out;
+}
+
+Json boxes_json(const std::optional<BoxLimit>& limit) {
+  if (!limit) return nullptr;
+  Json json{{"boxes", Json::array()}};
+  for (std::size_t j = 0; j < limit->phases.size(); ++j) {
+    const ValueBox& passed = limit->phases[j].passed;
+    json["boxes"].push_back({{"low", list(passed.low)},
+                             {"high", list(passed.high)},
+                             {"below", list(limit->pairs[j].below)},
+                             {"above", list(limit->pairs[j].above)}});
+  }
+  return json;
 }
 
 Json limit_json(const std::optional<CertifiedLimit>& limit) {
@@ -100,6 +122,29 @@ Json claim_json(const CertifiedClaim& c) {
   return json;
 }
 
+Json constants_json(const ModelConstants<Rational>& c, const LipschitzConstant<Rational>& l_star) {
+  return {{"l_r", constant_json(c.l_r)},     {"l_p", constant_json(c.l_p)}, {"k", constant_json(c.k_tv)},
+          {"l_star", constant_json(l_star)}, {"r_min", text(c.r_min)},      {"r_max", text(c.r_max_signed)}};
+}
+
+/// What certificates of both formats begin with.
+template <class Any>
+Json head_json(const char* format, const Any& c) {
+  Json json{{"format", format},
+            {"version", 1},
+            {"model", model_json(c.model)},
+            {"reading", to_string(c.reading)},
+            {"tie", c.tie == TieBreak::highest_index ? "highest" : "lowest"}};
+  json["constants"] = constants_json(c.constants, c.l_star);
+  return json;
+}
+
+Json claims_json(const std::vector<CertifiedClaim>& claims) {
+  Json json = Json::array();
+  for (const CertifiedClaim& claim : claims) json.push_back(claim_json(claim));
+  return json;
+}
+
 }  // namespace
 
 bool CertifiedLimit::all_attained() const {
@@ -111,14 +156,7 @@ bool Certificate::any(Verdict verdict) const {
 }
 
 std::string certificate_json(const Certificate& c) {
-  Json json{{"format", "maximin-certificate"},
-            {"version", 1},
-            {"model", model_json(c.model)},
-            {"reading", to_string(c.reading)},
-            {"tie", c.tie == TieBreak::highest_index ? "highest" : "lowest"}};
-  json["constants"] = {{"l_r", constant_json(c.constants.l_r)}, {"l_p", constant_json(c.constants.l_p)},
-                       {"k", constant_json(c.constants.k_tv)},  {"l_star", constant_json(c.l_star)},
-                       {"r_min", text(c.constants.r_min)},      {"r_max", text(c.constants.r_max_signed)}};
+  Json json = head_json("maximin-certificate", c);
   json["optimal"] = list(c.optimal);
   json["pairs"] = Json::array();
   for (const CertifiedPair& p : c.pairs) {
@@ -128,11 +166,31 @@ std::string certificate_json(const Certificate& c) {
                              {"robust", list(p.robust)}});
   }
   json["rounds"] = c.rounds;
-  json["limit"] = limit_json(c.limit);
+  json["limit"] = c.limit ? limit_json(c.limit) : boxes_json(c.boxes);
   json["test_time"] = {{"policy", c.test_time_policy}, {"robust", list(c.test_time_robust)}};
   json["belief_game"] = belief_json(c.belief_game);
-  json["claims"] = Json::array();
-  for (const CertifiedClaim& entry : c.claims) json["claims"].push_back(claim_json(entry));
+  json["claims"] = claims_json(c.claims);
+  return json.dump() + "\n";
+}
+
+std::string certificate_json(const BoundsCertificate& c) {
+  Json json = head_json("maximin-bounds", c);
+  json["optimal"] = {{"low", list(c.optimal.low)}, {"high", list(c.optimal.high)}};
+  json["bits"] = c.bits;
+  json["pairs"] = Json::array();
+  for (const BoundedPair& p : c.pairs) {
+    json["pairs"].push_back({{"choices", p.choices},
+                             {"provoked", p.provoked},
+                             {"below", list(p.values.below)},
+                             {"above", list(p.values.above)}});
+  }
+  json["rounds"] = c.rounds;
+  json["limit"] = boxes_json(c.limit);
+  json["test_time"] = {{"below", list(c.test_time)}};
+  Json game = belief_json(c.belief_game);
+  if (c.belief_game) game.erase("exact");
+  json["belief_game"] = std::move(game);
+  json["claims"] = claims_json(c.claims);
   return json.dump() + "\n";
 }
 

@@ -1,8 +1,7 @@
+#include <algorithm>
 #include <map>
 #include <utility>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include <maximin/proofs_check/certificate/belief_positions.hpp>
 #include <maximin/proofs_check/certificate/certificate.hpp>
@@ -25,10 +24,7 @@ ModelConstants<Rational> finite_constants(const FiniteMdp<Rational>& mdp, const 
   ModelConstants<Rational> c = model_constants(mdp, geometry);
   if (c.finite()) return c;
   const auto& bad = c.l_r.infinite ? c.l_r : c.l_p.infinite ? c.l_p : c.k_tv;
-  throw AssumptionFails(fmt::format(
-      "Assumption 1: states {} and {} are at distance 0, but their {} for action {} differ, so no Lipschitz constant "
-      "exists",
-      bad.s1, bad.s2, c.l_r.infinite ? "rewards" : "transitions", bad.action));
+  throw no_lipschitz_constant(bad.s1, bad.s2, c.l_r.infinite ? "rewards" : "transitions", bad.action);
 }
 
 /// One model: solves what a certificate states of it, and shows it to the claims.
@@ -36,15 +32,16 @@ class Certifier {
  public:
   Certifier(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides, const CertifyOptions& options)
       : options_(options),
-        geometry_(exact_geometry(model, overrides)),
+        geometry_(model, overrides),
         mdp_(model.mdp),
-        balls_(geometry_.balls),
+        balls_(geometry_.balls()),
         scaled_(model.mdp),
         constants_(finite_constants(model.mdp, geometry_)),
         optimal_(policy_iteration(model.mdp, {.tie = options.tie})),
-        claims_(model.mdp, scaled_, geometry_, constants_, optimal_, options),
+        claims_(model.mdp, scaled_, geometry_, {constants_, ScaledValues(optimal_.v), ScaledValues(optimal_.v)},
+                options),
         result_(model) {
-    result_.model.geometry = geometry_.geometry;
+    result_.model.geometry = geometry_.stated();
     result_.reading = options.reading;
     result_.tie = options.tie;
     result_.largest_ball = balls_.largest_ball();
@@ -66,22 +63,44 @@ class Certifier {
     if (options_.stop && *options_.stop) throw Interrupted();
   }
 
-  /// Runs rounds, exactly, until the limit is known or a budget ends them.
+  /// Runs rounds, exactly, until the limit is known or a budget ends them. An orbit tells most. Where none is found for
+  /// long, boxes are tried every so often: if they prove what is wanted, they end the search.
   void iterate() {
     OrbitSearch search(mdp_, scaled_, balls_, options_);
-    std::optional<EnteredOrbit> entered;
+    const Boxes boxes(mdp_, balls_, scaled_, options_.tie);
+    long next_boxes = options_.rounds_before_boxes;
     ScaledTable q{QTable<Integer>::Constant(mdp_.states(), mdp_.actions(), Integer(0)), 1};
-    long n = 0;
-    while (n < options_.max_rounds && !entered && !search.hopeless() &&
-           static_cast<long>(msb(q.denominator)) <= options_.max_bits) {
+    for (long n = 0;;) {
       poll();
       Policy composed = round(n++, q);
-      entered = search.after_round(std::move(composed), q);
+      if (const auto entered = search.after_round(std::move(composed), q)) return follow(n, q, *entered);
+      const bool over =
+          n >= options_.max_rounds || search.hopeless() || static_cast<long>(msb(q.denominator)) > options_.max_bits;
+      result_.ties_open = search.ties_open();
+      if (over || n == next_boxes) {
+        next_boxes *= 2;
+        if (enclose(boxes, n, search.period()) || over) return;
+      }
     }
-    result_.ties_open = !entered && search.ties_open();
-    if (!entered) return claims_.no_limit();
-    result_.limit = certify_limit(mdp_, balls_, entered->orbit, entered->phases, options_.tie);
-    result_.limit->gap = claims_.limit(n, q, *entered, *result_.limit);
+  }
+
+  /// The rounds from n on follow an orbit.
+  void follow(long n, const ScaledTable& q, const EnteredOrbit& entered) {
+    result_.ties_open = false;
+    result_.boxes.reset();
+    result_.limit = certify_limit(mdp_, balls_, entered.orbit, entered.phases, options_.tie);
+    result_.limit->gap = claims_.limit(n, q, entered, *result_.limit);
+  }
+
+  /// Boxes around all rounds from n on. Returns whether they prove every claim about rounds that is wanted.
+  bool enclose(const Boxes& boxes, long n, long period) {
+    result_.boxes = boxes.limit_after(boxes.on_grid(passed_), std::max(1L, period));
+    if (!result_.boxes) {
+      claims_.no_limit();
+      return false;
+    }
+    result_.boxes_gap = claims_.boxed_limit(n, *result_.boxes);
+    return claims_.rounds_hold();
   }
 
   /// Makes Q_n Q_{n+1}. Returns pi_n o omega_n.
@@ -94,7 +113,8 @@ class Certifier {
     greedy_policy(q.numerators, best, options_.tie);
     result_.pessimism_changes_action = result_.pessimism_changes_action || best != policies.policy;
     compose(policies.policy, policies.attack, composed);
-    ScaledTable next = scaled_.backup(taken(q, composed));
+    passed_ = taken(q, composed);
+    ScaledTable next = scaled_.backup(passed_);
     result_.rounds.push_back(index_of(n, std::move(policies), composed));
     claims_.round(n, q, next, result_.rounds.back());
     q = std::move(next);
@@ -119,7 +139,7 @@ class Certifier {
     std::vector<Rational> scratch;
     maximin_policy(optimal_.q, balls_, result_.test_time_policy, scratch, MinAggregator{}, options_.tie);
     result_.test_time_robust = evaluate_against_optimal_attack(mdp_, balls_, result_.test_time_policy).v;
-    claims_.test_time(result_.test_time_robust, result_.l_star.value);
+    claims_.test_time(ScaledValues(result_.test_time_robust), result_.l_star.value);
   }
 
   void beliefs() {
@@ -139,6 +159,7 @@ class Certifier {
   CertifiedSolution<Rational> optimal_;  // Q* and V*
   ExactClaims claims_;
   std::map<std::pair<Policy, AttackPolicy>, int> known_;  // indices of pairs
+  ScaledValues passed_;                                   // x_n of the last round
   Certificate result_;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace maximin {
 namespace {
 
@@ -29,70 +31,66 @@ Rational square_distance(const Metric<Rational>::Points& points, State s, State 
   return sum;
 }
 
-ExactGeometry euclidean(const Geometry<Rational>& g) {
-  const auto n = static_cast<State>(g.points.rows());
-  QTable<Rational> lower(n, n), upper(n, n), squares(n, n);
-  bool exact = true;
-  for (State s = 0; s < n; ++s) {
-    for (State t = 0; t < n; ++t) {
-      squares(s, t) = square_distance(g.points, s, t);
-      const auto [root, attained] = root_below(squares(s, t));
-      lower(s, t) = root;
-      upper(s, t) = attained ? root : Rational(root + Rational(1, Integer(1) << root_bits));
-      exact = exact && attained;
-    }
-  }
-  const Rational eps = *g.eps;
-  return {std::move(lower),
-          std::move(upper),
-          exact,
-          {Metric<Rational>::from_shortest_paths(std::move(squares)), eps * eps},
-          eps,
-          g};
-}
-
-/// Paths that do not exist count as |S| hops in an exact metric.
-ExactGeometry by_metric(Perturbation<Rational> balls, Geometry<Rational> g) {
-  const State n = balls.states();
-  const bool hops = g.kind == Kind::hops || g.kind == Kind::neighbourhoods || g.kind == Kind::none;
-  QTable<Rational> distances(n, n);
-  for (State s = 0; s < n; ++s) {
-    for (State t = 0; t < n; ++t) {
-      const Rational d = balls.metric().distance(s, t);
-      distances(s, t) = hops && d >= n ? Rational(-1) : d;
-    }
-  }
-  Rational eps = balls.eps();
-  if (g.kind != Kind::points) {
-    g = {};
-    g.kind = Kind::distances;
-    g.distances = distances;
-  }
-  g.eps = eps;
-  return {distances, distances, true, std::move(balls), std::move(eps), std::move(g)};
+Perturbation<Rational> balls_of(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
+                                const Geometry<Rational>& g) {
+  if (g.kind != Kind::points || g.norm != Norm::l2) return make_perturbation(model, overrides);
+  if (*g.eps < 0) throw InputError("eps: negative, expected eps >= 0");
+  const Rational square = *g.eps * *g.eps;
+  return Perturbation<Rational>::decided_by(
+      Metric<Rational>::from_points(g.points, g.norm), *g.eps,
+      [&](State s, State t) { return square_distance(g.points, s, t) <= square; });
 }
 
 }  // namespace
 
-ExactGeometry exact_geometry(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides) {
-  Geometry<Rational> g = resolve_geometry(model, overrides);
-  if (g.kind == Kind::points && g.norm == Norm::l2) {
-    if (*g.eps < 0) throw InputError("eps: negative, expected eps >= 0");
-    return euclidean(g);
+ExactGeometry::ExactGeometry(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides)
+    : stated_(resolve_geometry(model, overrides)), balls_(balls_of(model, overrides, stated_)) {
+  euclidean_ = stated_.kind == Kind::points && stated_.norm == Norm::l2;
+  hops_ = stated_.kind == Kind::hops || stated_.kind == Kind::neighbourhoods;
+  if (stated_.kind != Kind::neighbourhoods) return;
+  const Rational eps = balls_.eps();
+  stated_ = {};
+  stated_.kind = Kind::distances;
+  stated_.eps = eps;
+  stated_.distances.resize(balls_.states(), balls_.states());
+  for (State s = 0; s < balls_.states(); ++s) {
+    for (State t = 0; t < balls_.states(); ++t) stated_.distances(s, t) = finite(s, t) ? lower(s, t) : Rational(-1);
   }
-  return by_metric(make_perturbation(model, overrides), std::move(g));
+}
+
+bool ExactGeometry::finite(State s, State t) const {
+  return !hops_ || balls_.metric().distance(s, t) < balls_.states();
+}
+
+Rational ExactGeometry::lower(State s, State t) const {
+  return euclidean_ ? root_below(square_distance(stated_.points, s, t)).first : balls_.metric().distance(s, t);
+}
+
+Rational ExactGeometry::upper(State s, State t) const {
+  if (!euclidean_) return balls_.metric().distance(s, t);
+  const auto [root, attained] = root_below(square_distance(stated_.points, s, t));
+  return attained ? root : Rational(root + Rational(1, Integer(1) << root_bits));
+}
+
+AssumptionFails no_lipschitz_constant(State s, State t, const char* what, Action action) {
+  return AssumptionFails(fmt::format(
+      "Assumption 1: states {} and {} are at distance 0, but their {} for action {} differ, so no Lipschitz constant "
+      "exists",
+      s, t, what, action));
 }
 
 LipschitzReach lipschitz_reach(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,
-                               const ModelConstants<Rational>& constants) {
-  LipschitzReach reach{geometry.lower * constants.l_r.value, geometry.lower * constants.l_p.value};
-  if (geometry.exact) return reach;
+                               const ModelConstants<Rational>& constants, bool may_fall_short) {
+  LipschitzReach reach{QTable<Rational>(mdp.states(), mdp.states()), QTable<Rational>(mdp.states(), mdp.states())};
   for (State s = 0; s < mdp.states(); ++s) {
     for (State t = s + 1; t < mdp.states(); ++t) {
+      if (!geometry.finite(s, t)) continue;
+      const Rational d = geometry.lower(s, t);
+      Rational& r = reach.rewards(s, t) = constants.l_r.value * d;
+      Rational& p = reach.probabilities(s, t) = constants.l_p.value * d;
+      if (!may_fall_short) continue;
       for (Action a = 0; a < mdp.actions(); ++a) {
-        Rational& r = reach.rewards(s, t);
         r = std::max(r, Rational(abs(Rational(mdp.reward(s, a) - mdp.reward(t, a)))));
-        Rational& p = reach.probabilities(s, t);
         p = std::max(p, internal::row_difference<Rational>(mdp.successors(s, a), mdp.successors(t, a)).largest);
       }
     }

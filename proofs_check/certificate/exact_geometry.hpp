@@ -9,28 +9,46 @@
 namespace maximin {
 
 /// The distances of a model in rational numbers. Under l2 they are roots, enclosed between neighbouring multiples of
-/// 2^-64; otherwise both bounds are the distance. A negative entry stands for infinity.
-struct ExactGeometry {
-  QTable<Rational> lower, upper;  ///< |S| x |S|
-  bool exact = true;              ///< lower == upper
-  Perturbation<Rational> balls;   ///< B(s), decided exactly (under l2 on squares: its metric is not the distance)
-  Rational eps;                   ///< radius of the balls
-  Geometry<Rational> geometry;    ///< as a certificate states it: points with a norm, or distances
+/// 2^-64; otherwise both bounds are the distance.
+class ExactGeometry {
+ public:
+  /// The geometry that `model` has with the overrides of a command line. Throws InputError as `make_perturbation`.
+  explicit ExactGeometry(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides = {});
 
-  bool finite(State s, State t) const { return lower(s, t) >= 0; }
+  /// d-(s,t), and d+(s,t). Not for pairs at infinite distance.
+  Rational lower(State s, State t) const;
+  Rational upper(State s, State t) const;
+  bool finite(State s, State t) const;
   /// The upper bound: Lipschitz constants by it are never too large.
-  const Rational& distance(State s, State t) const { return upper(s, t); }
+  Rational distance(State s, State t) const { return upper(s, t); }
+
+  /// Whether distances are not rounded: not under l2.
+  bool exact() const { return !euclidean_; }
+  /// B(s), decided exactly: under l2 on squares, so that their metric gives squares of distances.
+  const Perturbation<Rational>& balls() const { return balls_; }
+  /// Radius of the balls.
+  const Rational& eps() const { return *stated_.eps; }
+  /// As a certificate states it: points with a norm, hops, the discrete metric, or distances, where a negative entry
+  /// stands for infinity.
+  const Geometry<Rational>& stated() const { return stated_; }
+
+ private:
+  Geometry<Rational> stated_;
+  Perturbation<Rational> balls_;
+  bool euclidean_ = false;
+  bool hops_ = false;  // paths that do not exist count as |S| hops in an exact metric
 };
 
-/// The geometry that `model` has with the overrides of a command line. Throws InputError as `make_perturbation`.
-ExactGeometry exact_geometry(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides = {});
+/// Assumption 1 fails: states at distance 0 differ in their "rewards" or "transitions".
+AssumptionFails no_lipschitz_constant(State s, State t, const char* what, Action action);
 
 /// l_r d(s,t) and l_p d(s,t) for every pair of states, or a little less: the constant times the lower distance, or what
-/// the pair itself differs by if that is more. |S| x |S|, used for s < t.
+/// the pair itself differs by if that is more, which it can only be where distances or constants `may_fall_short` of
+/// their own. |S| x |S|, used for s < t.
 struct LipschitzReach {
   QTable<Rational> rewards, probabilities;
 };
 LipschitzReach lipschitz_reach(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,
-                               const ModelConstants<Rational>& constants);
+                               const ModelConstants<Rational>& constants, bool may_fall_short);
 
 }  // namespace maximin

@@ -35,10 +35,10 @@ class OrbitSearch {
   /// Whether that happened so often that it will not be settled.
   bool hopeless() const { return hopeless_; }
 
- private:
   /// The smallest period that what is done has had for twice as long, or 0.
   long period() const;
 
+ private:
   struct Candidate {
     Orbit orbit;
     int failures = 0;  ///< to settle it when Q_n had come near

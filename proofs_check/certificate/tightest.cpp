@@ -20,12 +20,21 @@ CertifiedClaim Tightest::verdict(ClaimId id, bool exact) const {
   return claim;
 }
 
+void Tightest::join(const Tightest& other) {
+  if (other.tightest_) keep(tightest_, *other.tightest_);
+  if (other.decisive_) keep(decisive_, *other.decisive_);
+  undecided_ = undecided_ || other.undecided_;
+}
+
+Instance largest_entry(const ScaledTable& x, long n, const Rational& right) {
+  const Integer* first = x.numerators.data();
+  const auto at = static_cast<State>(std::max_element(first, first + x.numerators.size()) - first);
+  const auto actions = static_cast<Action>(x.numerators.cols());
+  return {Rational(first[at], x.denominator), right, n, {at / actions}, at % actions};
+}
+
 Instance largest_difference(const ScaledTable& x, const ScaledTable& y, long n, const Rational& right) {
-  const ScaledTable apart = difference(x, y);
-  const Integer* first = apart.numerators.data();
-  const auto at = static_cast<State>(std::max_element(first, first + apart.numerators.size()) - first);
-  const auto actions = static_cast<Action>(apart.numerators.cols());
-  return {Rational(first[at], apart.denominator), right, n, {at / actions}, at % actions};
+  return largest_entry(difference(x, y), n, right);
 }
 
 LipschitzCheck::LipschitzCheck(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,

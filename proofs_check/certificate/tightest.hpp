@@ -32,6 +32,9 @@ class Tightest {
   /// Something that the claim speaks of was not decided.
   void undecided() { undecided_ = true; }
 
+  /// Takes in what the other has seen.
+  void join(const Tightest& other);
+
   /// `exact`: whether right sides are the claim's own and not rounded down.
   CertifiedClaim verdict(ClaimId id, bool exact) const;
 
@@ -43,6 +46,9 @@ class Tightest {
   std::optional<Instance> tightest_, decisive_;
   bool undecided_ = false;
 };
+
+/// Where x is largest, as the left side of an instance at n.
+Instance largest_entry(const ScaledTable& x, long n, const Rational& right);
 
 /// Where x - y is largest, as the left side of an instance at n.
 Instance largest_difference(const ScaledTable& x, const ScaledTable& y, long n, const Rational& right);

@@ -70,7 +70,7 @@ TEST(Boxes, HoldTheRoundsOfPessimisticQIterationAndItsLimit) {
     const Enclosed x(random_model(trial), trial % 2 == 0 ? TieBreak::lowest_index : TieBreak::highest_index);
     constexpr int rounds = 30, later = 60;
     RoundBox box = x.boxes.first_round();
-    std::optional<std::vector<RoundBox>> phases;
+    std::optional<BoxLimit> limit;
     QTable<Rational> q = QTable<Rational>::Constant(x.model.mdp.states(), x.model.mdp.actions(), Rational(0)), next;
     PessimisticStep<Rational> step;
     for (int n = 0; n < later; ++n) {
@@ -78,14 +78,15 @@ TEST(Boxes, HoldTheRoundsOfPessimisticQIterationAndItsLimit) {
       pessimistic_update(x.model.mdp, x.balls, q, step, next, x.tie);
       if (n < rounds) {
         expect_inside(box, q, step, x.boxes.grid());
-        if (n == rounds - 1) phases = x.boxes.find_invariant(box.passed, 1 + static_cast<long>(trial % 3));
+        if (n == rounds - 1) limit = x.boxes.limit_after(box.passed, 1 + static_cast<long>(trial % 3));
         box = x.boxes.round_after(box.passed);
-      } else if (phases) {
-        expect_inside((*phases)[static_cast<std::size_t>(n - rounds) % phases->size()], q, step, x.boxes.grid());
+      } else if (limit) {
+        expect_inside(limit->phases[static_cast<std::size_t>(n - rounds) % limit->phases.size()], q, step,
+                      x.boxes.grid());
       }
       std::swap(q, next);
     }
-    found += phases.has_value();
+    found += limit.has_value();
   }
   EXPECT_GE(found, 38);
 }
@@ -100,8 +101,13 @@ TEST(Boxes, EncloseValuesOnBothSides) {
     maximin_policy(optimal.q, x.balls, policy, scratch, MinAggregator{}, x.tie);
     Choices choices;
     for (const Action a : policy) choices.push_back({a});
+    Choices provoked(choices.size());
+    for (State s = 0; s < x.model.mdp.states(); ++s) {
+      for (const State t : x.balls.ball(s))
+        provoked[static_cast<std::size_t>(s)].push_back(policy[static_cast<std::size_t>(t)]);
+    }
     const auto robust = evaluate_against_optimal_attack(x.model.mdp, x.balls, policy);
-    const PairBox pair = x.boxes.enclose_pair(choices, provokable(x.balls, choices));
+    const PairBox pair = x.boxes.enclose_pair(choices, provoked);
     for (State s = 0; s < x.model.mdp.states(); ++s) {
       EXPECT_LE(v.low[s], optimal.v[s]);
       EXPECT_GE(v.high[s], optimal.v[s]);
@@ -118,10 +124,10 @@ TEST(Boxes, ATieThatVanishesLeavesBothChoices) {
   const Enclosed x(rationalise(builtin_model("grid")));
   RoundBox box = x.boxes.first_round();
   for (int n = 1; n < 200; ++n) box = x.boxes.round_after(box.passed);
-  const auto phases = x.boxes.find_invariant(box.passed, 1);
-  ASSERT_TRUE(phases);
+  const auto limit = x.boxes.limit_after(box.passed, 1);
+  ASSERT_TRUE(limit);
   const auto several = [](const std::vector<Action>& list) { return list.size() > 1; };
-  EXPECT_TRUE(std::any_of(phases->front().choices.begin(), phases->front().choices.end(), several));
+  EXPECT_TRUE(std::any_of(limit->phases.front().choices.begin(), limit->phases.front().choices.end(), several));
 }
 
 TEST(Boxes, CandidatesAreThoseThatNothingIsSureToBeat) {

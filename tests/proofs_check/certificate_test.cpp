@@ -56,14 +56,37 @@ TEST(Certify, TheCycleIsProved) {
   }
 }
 
-TEST(Certify, WhatTheRoundsDoNotDecideIsLeftOpen) {
+TEST(Certify, WithoutAnOrbitBoxesDecideWhatTheyCan) {
   const Certificate c = certify(example("cycling"), {}, {.max_rounds = 2});
   EXPECT_FALSE(c.limit);
-  for (const ClaimId id : {ClaimId::lemma_1, ClaimId::lemma_2, ClaimId::theorem_1, ClaimId::c_finite_n}) {
-    EXPECT_EQ(of(c, id).verdict, Verdict::undetermined);
-  }
+  ASSERT_TRUE(c.boxes);
+  EXPECT_FALSE(c.any(Verdict::undetermined));
+  EXPECT_EQ(of(c, ClaimId::theorem_1).right, of(certify(example("cycling")), ClaimId::theorem_1).right);
+}
+
+/// Boxes never say that a claim is violated: what they do not show to hold is left open.
+TEST(Certify, WhatBoxesDoNotDecideIsLeftOpen) {
+  const Certificate c = certify(example("one-sided"), {}, {.reading = Reading::paper, .max_rounds = 1});
+  EXPECT_FALSE(c.limit);
+  ASSERT_TRUE(c.boxes);
+  EXPECT_EQ(of(c, ClaimId::theorem_1).verdict, Verdict::undetermined);
   EXPECT_EQ(of(c, ClaimId::lemma_3).verdict, Verdict::holds) << "it speaks of the rounds that were run";
   EXPECT_EQ(of(c, ClaimId::e_test_time).verdict, Verdict::holds);
+}
+
+/// Positions of the belief game that are not listed count for the least that a value can be: the loss looks greater.
+TEST(Certify, TooManyPositionsLeaveALowerBound) {
+  CertifyOptions options{.only = std::set{ClaimId::f_belief}, .max_rounds = 1};
+  const Certificate all = certify(example("garnet"), {}, options);
+  options.max_positions = 2'000;
+  const Certificate few = certify(example("garnet"), {}, options);
+  ASSERT_TRUE(few.belief_game);
+  EXPECT_FALSE(few.belief_game->exact);
+  EXPECT_EQ(few.belief_game->positions.size(), 2'000);
+  EXPECT_GT(few.claims.front().left, all.claims.front().left);
+  EXPECT_LE(few.belief_game->reach, all.belief_game->reach);
+  options.max_positions = 5;
+  EXPECT_FALSE(certify(example("garnet"), {}, options).belief_game) << "not even the starts";
 }
 
 /// An absorbing state is in every ball and all its actions are one: the tie at every observation is for ever, and the
@@ -139,14 +162,14 @@ TEST(ExactGeometry, RootsLieBetweenNeighbouringMultiples) {
   model.geometry.points << Rational(0), Rational(0), Rational(3), Rational(4), Rational(1), Rational(1);
   model.geometry.norm = Norm::l2;
   model.geometry.eps = 5;
-  const ExactGeometry g = exact_geometry(model);
-  EXPECT_FALSE(g.exact);
+  const ExactGeometry g(model);
+  EXPECT_FALSE(g.exact());
   EXPECT_EQ(g.lower(0, 1), 5);
   EXPECT_EQ(g.upper(0, 1), 5);
   EXPECT_LT(g.lower(0, 2) * g.lower(0, 2), 2);
   EXPECT_GT(g.upper(0, 2) * g.upper(0, 2), 2);
   EXPECT_EQ(g.upper(0, 2) - g.lower(0, 2), Rational(1, Integer(1) << 64));
-  EXPECT_TRUE(g.balls.contains(0, 1)) << "the ball is closed, and 3, 4, 5 is exact";
+  EXPECT_TRUE(g.balls().contains(0, 1)) << "the ball is closed, and 3, 4, 5 is exact";
 }
 
 TEST(Rationalise, ReadsDecimalsAsTheyAreMeant) {

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <maximin/proofs_check/certificate/belief_positions.hpp>
+#include <maximin/proofs_check/certificate/bounds_certificate.hpp>
+#include <maximin/proofs_check/certificate/exact_claims.hpp>
+#include <maximin/proofs_check/certificate/exact_geometry.hpp>
+#include <maximin/proofs_check/certificate/witnesses.hpp>
+#include <maximin/proofs_check/examination.hpp>
+#include <maximin/tabular/scaled.hpp>
+
+namespace maximin {
+namespace {
+
+/// One model: encloses what a certificate states of it, and shows it to the claims.
+class BoundsCertifier {
+ public:
+  BoundsCertifier(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
+                  const CertifyOptions& options)
+      : options_(options),
+        geometry_(model, overrides),
+        mdp_(model.mdp),
+        balls_(geometry_.balls()),
+        scaled_(model.mdp),
+        boxes_(mdp_, balls_, scaled_, options.tie),
+        optimal_(boxes_.enclose_optimal()),
+        low_(scaled_.backup(optimal_.low)),
+        high_(scaled_.backup(optimal_.high)),
+        witnesses_(find_witnesses(mdp_, geometry_, low_, high_)),
+        claims_(mdp_, scaled_, geometry_, {witnesses_.constants, optimal_.low, optimal_.high, true}, options),
+        result_(model) {
+    result_.model.geometry = geometry_.stated();
+    result_.reading = options.reading;
+    result_.tie = options.tie;
+    result_.constants = witnesses_.constants;
+    result_.l_star = witnesses_.l_star;
+    result_.optimal = optimal_;
+    result_.bits = boxes_.grid().bits();
+    result_.largest_ball = balls_.largest_ball();
+  }
+
+  BoundsCertificate run() {
+    iterate();
+    test_time();
+    beliefs();
+    result_.claims = claims_.verdicts();
+    return std::move(result_);
+  }
+
+ private:
+  void poll() const {
+    if (options_.stop && *options_.stop) throw Interrupted();
+  }
+
+  /// Runs rounds until boxes around all later ones prove what is wanted, or a budget ends them. They are tried at
+  /// N = 8, 16, 32, ...
+  void iterate() {
+    long next_attempt = 8;
+    std::optional<ValueBox> before;
+    for (long n = 0; n < options_.max_rounds; ++n) {
+      poll();
+      RoundBox round = before ? boxes_.round_after(*before) : boxes_.first_round();
+      result_.rounds.push_back(index_of(n, round));
+      claims_.boxed_round(n, before ? &*before : nullptr, round, result_.rounds.back());
+      before = std::move(round.passed);
+      if (n + 1 < next_attempt && n + 1 < options_.max_rounds) continue;
+      next_attempt *= 2;
+      result_.limit = boxes_.limit_after(*before, period());
+      if (!result_.limit) continue;
+      result_.gap = claims_.boxed_limit(n + 1, *result_.limit);
+      if (claims_.rounds_hold()) return;
+    }
+    if (!result_.limit) claims_.no_limit();
+  }
+
+  /// The index of what is known of a round's policies, whose values are bounded when it is first met.
+  int index_of(long n, const RoundBox& round) {
+    const auto [entry, is_new] =
+        known_.try_emplace({round.choices, round.provoked}, static_cast<int>(result_.pairs.size()));
+    if (is_new) {
+      result_.pairs.push_back({round.choices, round.provoked, boxes_.enclose_pair(round.choices, round.provoked)});
+      claims_.boxed_pair(n, result_.pairs.back().values);
+    }
+    return entry->second;
+  }
+
+  /// The smallest period that the rounds have had for twice as long; 1 if none.
+  long period() const {
+    const auto& rounds = result_.rounds;
+    const auto n = static_cast<long>(rounds.size());
+    for (long k = 1; k <= options_.max_period && 3 * k <= n; ++k) {
+      if (std::equal(rounds.end() - 2 * k, rounds.end(), rounds.end() - 3 * k)) return k;
+    }
+    return 1;
+  }
+
+  void test_time() {
+    const Choices choices = candidates(q_star(), balls_, options_.tie);
+    result_.test_time = boxes_.enclose_robust(choices);
+    claims_.test_time(result_.test_time, result_.l_star.value);
+  }
+
+  void beliefs() {
+    if (!options_.wants(ClaimId::f_belief)) return;
+    poll();
+    CertifyOptions bounded = options_;
+    bounded.max_exact_positions = 0;
+    const TableBox<Integer> q = q_star();
+    result_.belief_game = certify_belief_game(
+        mdp_, geometry_, [&](std::span<const State> belief) { return candidates(q, belief, options_.tie); }, bounded);
+    if (!result_.belief_game) return;
+    claims_.beliefs(*result_.belief_game, start_values(*result_.belief_game, balls_), result_.l_star.value);
+  }
+
+  /// Around Q*. Both tables have one denominator, that of the grid times the model's.
+  TableBox<Integer> q_star() const { return {low_.numerators, high_.numerators}; }
+
+  const CertifyOptions& options_;
+  ExactGeometry geometry_;
+  const FiniteMdp<Rational>& mdp_;
+  const Perturbation<Rational>& balls_;
+  ScaledMdp scaled_;
+  Boxes boxes_;
+  ValueBox optimal_;
+  ScaledTable low_, high_;  // around Q*
+  Witnesses witnesses_;
+  ExactClaims claims_;
+  std::map<std::pair<Choices, Choices>, int> known_;  // indices of pairs
+  BoundsCertificate result_;
+};
+
+}  // namespace
+
+BoundsCertificate certify_by_bounds(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
+                                    const CertifyOptions& options) {
+  return BoundsCertifier(model, overrides, options).run();
+}
+
+bool BoundsCertificate::any(Verdict verdict) const {
+  return std::any_of(claims.begin(), claims.end(), [&](const CertifiedClaim& c) { return c.verdict == verdict; });
+}
+
+}  // namespace maximin
