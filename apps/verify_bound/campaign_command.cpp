@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -25,6 +24,7 @@
 #include <maximin/proofs_check/trial_file.hpp>
 
 #include "outcome.hpp"
+#include "shared_options.hpp"
 #include "violation.hpp"
 
 namespace maximin::verify_bound {
@@ -47,8 +47,7 @@ Campaign campaign(const Options& options) {
   Campaign c;
   c.seed = options.seed;
   c.trials = options.trials;
-  c.threads =
-      options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  c.threads = threads_for(options.threads);
   c.examination = examination_options(options);
   return c;
 }

@@ -17,6 +17,7 @@
 
 #include "options.hpp"
 #include "outcome.hpp"
+#include "shared_options.hpp"
 
 namespace maximin::verify_bound {
 namespace {
@@ -109,14 +110,8 @@ void declare(CLI::App& command, CertifyCommand& o) {
       ->type_name("FILE")
       ->group(group);
   command.add_flag("--force", o.force, "replace the file if it exists")->group(group);
-  command.add_option("--reading", o.reading, "R_max as the paper prints it, or corrected (the default)")
-      ->check(apps::one_of({"paper", "corrected"}))
-      ->type_name("WORD")
-      ->group(group);
-  command.add_option("--tie", o.tie, "which index wins among equals: lowest (the default) or highest")
-      ->check(apps::one_of({"lowest", "highest"}))
-      ->type_name("WORD")
-      ->group(group);
+  add_reading(command, o.reading)->group(group);
+  add_tie(command, o.tie)->group(group);
   command.add_option("--claims", o.claims, "claims to prove, separated by commas (default: all)")
       ->delimiter(',')
       ->type_name("LIST")
@@ -135,8 +130,8 @@ void declare(CLI::App& command, CertifyCommand& o) {
 
 int run_certify_command(const CertifyCommand& options) {
   CertifyOptions asked = options.budgets;
-  asked.reading = options.reading == "paper" ? Reading::paper : Reading::corrected;
-  asked.tie = options.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
+  asked.reading = reading_named(options.reading);
+  asked.tie = tie_named(options.tie);
   asked.only = claims_named(options.claims);
   asked.stop = &apps::stop_on_interrupt();
   const auto overwrite = options.force ? apps::Overwrite::replace : apps::Overwrite::refuse;

@@ -30,6 +30,7 @@
 
 #include "options.hpp"
 #include "outcome.hpp"
+#include "shared_options.hpp"
 #include "violation.hpp"
 
 namespace maximin::verify_bound {
@@ -65,8 +66,8 @@ struct Found {
 
 ExaminationOptions examination(const FalsifyCommand& o) {
   ExaminationOptions e;
-  e.reading = o.reading == "paper" ? Reading::paper : Reading::corrected;
-  e.tie = o.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
+  e.reading = reading_named(o.reading);
+  e.tie = tie_named(o.tie);
   e.max_iterations = 2'000;
   e.max_belief_positions = 2'000;
   return e;
@@ -126,7 +127,7 @@ std::vector<double> scores(const FalsifyCommand& o, const Goal& goal, std::chron
   c.seed = o.seed;
   c.first = static_cast<long>(found.size());
   c.trials = o.restarts;
-  c.threads = o.threads > 0 ? o.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  c.threads = threads_for(o.threads);
   c.examination = examination(o);
   c.examination.only.emplace();
   if (goal.claim) c.examination.only->insert(*goal.claim);
@@ -252,8 +253,6 @@ nlohmann::ordered_json results_json(const std::vector<Found>& all) {
 }  // namespace
 
 void declare(CLI::App& command, FalsifyCommand& o) {
-  std::vector<std::string> families;
-  for (const Family f : all_families()) families.emplace_back(family_name(f));
   command
       .add_option("--goal", o.goals, "claims to hunt, settling, sharper-belief, separated by\ncommas (default: all)")
       ->delimiter(',')
@@ -269,21 +268,11 @@ void declare(CLI::App& command, FalsifyCommand& o) {
       ->type_name("N");
   command.add_option("--states", o.states, fmt::format("number of states (default: {})", o.states))
       ->type_name("LOW:HIGH");
-  command.add_option("--family", o.family, "models to start from (default: mixed)")
-      ->check(apps::one_of(families))
-      ->type_name("WORD");
-  command.add_option("--reading", o.reading, "R_max as the paper prints it, or corrected (the default)")
-      ->check(apps::one_of({"paper", "corrected"}))
-      ->type_name("WORD");
-  command.add_option("--tie", o.tie, "which index wins among equals: lowest (the default) or highest")
-      ->check(apps::one_of({"lowest", "highest"}))
-      ->type_name("WORD");
-  command.add_option("--seed", o.seed, "start K of a seed climbs to the same model always (default: 1)")
-      ->check(apps::seed_number())
-      ->type_name("N");
-  command.add_option("--threads", o.threads, "0 takes one per core (the default)")
-      ->check(apps::whole_number(0, 1024))
-      ->type_name("N");
+  add_family(command, o.family, "models to start from (default: mixed)");
+  add_reading(command, o.reading);
+  add_tie(command, o.tie);
+  add_seed(command, o.seed, "start K of a seed climbs to the same model always (default: 1)");
+  add_threads(command, o.threads, "0 takes one per core (the default)");
   command
       .add_option("--model-dir", o.directory, "folder where the best model of each goal is written\n(default: here)")
       ->check(apps::existing_folder())

@@ -9,6 +9,8 @@
 
 #include <maximin/theory/error.hpp>
 
+#include "shared_options.hpp"
+
 namespace maximin::verify_bound {
 namespace {
 
@@ -37,13 +39,7 @@ std::optional<Range<T>> range(const std::string& text, std::string_view option, 
 
 void declare_checks(CLI::App& program, Options& o) {
   const std::string group = "What to check";
-  program
-      .add_option("--reading", o.reading,
-                  "R_max of the paper's claims: paper, Assumption 2 as printed,\n"
-                  "R <= R_max; or corrected, |R| <= R_max (the default)")
-      ->check(apps::one_of({"paper", "corrected"}))
-      ->type_name("WORD")
-      ->group(group);
+  add_reading(program, o.reading)->group(group);
   program
       .add_option("--claims", o.claims,
                   "claims to check, separated by commas (default: all): lemma-1,\n"
@@ -62,10 +58,7 @@ void declare_checks(CLI::App& program, Options& o) {
       .add_flag_callback(
           "--exact", [&o] { o.arith = "exact"; }, "short for --arith exact")
       ->group(group);
-  program.add_option("--tie", o.tie, "which index wins among equals: lowest (the default) or highest")
-      ->check(apps::one_of({"lowest", "highest"}))
-      ->type_name("WORD")
-      ->group(group);
+  add_tie(program, o.tie)->group(group);
   program
       .add_option("--max-iterations", o.max_iterations,
                   fmt::format("rounds of pessimistic Q-iteration before its fate is\nundetermined (default: {})",
@@ -90,26 +83,15 @@ void declare_checks(CLI::App& program, Options& o) {
 
 void declare_campaign(CLI::App& program, Options& o) {
   const std::string group = "Random models (without --model or --example)";
-  std::vector<std::string> names;
-  for (const Family f : all_families()) names.emplace_back(family_name(f));
   program.add_option("--trials", o.trials, fmt::format("models to draw (default: {})", o.trials))
       ->check(apps::whole_number(1, 1'000'000'000))
       ->type_name("N")
       ->group(group);
-  program.add_option("--seed", o.seed, "trial K of a seed is always the same model (default: 1)")
-      ->check(apps::seed_number())
-      ->type_name("N")
-      ->group(group);
-  program.add_option("--threads", o.threads, "0 takes one per core (the default); changes no result")
-      ->check(apps::whole_number(0, 1024))
-      ->type_name("N")
-      ->group(group);
-  program
-      .add_option("--family", o.family,
-                  "kind of models: informative (bounds that say something), broad,\n"
-                  "sparse, cycling (Q_n often cycles), costs (R <= 0), mixed (all of\nthem, the default)")
-      ->check(apps::one_of(names))
-      ->type_name("WORD")
+  add_seed(program, o.seed, "trial K of a seed is always the same model (default: 1)")->group(group);
+  add_threads(program, o.threads, "0 takes one per core (the default); changes no result")->group(group);
+  add_family(program, o.family,
+             "kind of models: informative (bounds that say something), broad,\n"
+             "sparse, cycling (Q_n often cycles), costs (R <= 0), mixed (all of\nthem, the default)")
       ->group(group);
   const auto range_option = [&](const char* name, std::string& value, const char* description) {
     program.add_option(name, value, description)->type_name("LOW:HIGH")->group(group);
@@ -219,8 +201,8 @@ std::optional<std::set<ClaimId>> claims_named(const std::vector<std::string>& na
 
 ExaminationOptions examination_options(const Options& o) {
   ExaminationOptions e;
-  e.reading = o.reading == "paper" ? Reading::paper : Reading::corrected;
-  e.tie = o.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
+  e.reading = reading_named(o.reading);
+  e.tie = tie_named(o.tie);
   e.max_iterations = o.max_iterations;
   e.max_belief_positions = o.max_positions;
   e.max_period = o.max_period;
