@@ -1,6 +1,5 @@
 #include "check_command.hpp"
 
-#include <algorithm>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -28,10 +27,8 @@ checker::Report checked(const std::string& file) {
 }
 
 Outcome outcome_of(const checker::Report& report) {
-  const auto says = [&](const char* verdict) {
-    return std::any_of(report.claims.begin(), report.claims.end(), [&](const auto& c) { return c.verdict == verdict; });
-  };
-  return says("violated") ? Outcome::violated : says("undetermined") ? Outcome::undetermined : Outcome::holds;
+  if (report.worst() == "violated") return Outcome::violated;
+  return report.worst() == "undetermined" ? Outcome::undetermined : Outcome::holds;
 }
 
 /// An exact number, cut where it is long.

@@ -1,5 +1,6 @@
 #include "checker.hpp"
 
+#include <algorithm>
 #include <istream>
 
 #include "claims.hpp"
@@ -49,6 +50,15 @@ Report check_sections(const Node& root) {
 }
 
 }  // namespace
+
+std::string_view Report::worst() const {
+  for (const std::string_view verdict : {"violated", "undetermined"}) {
+    if (std::any_of(claims.begin(), claims.end(), [&](const ClaimVerdict& c) { return c.verdict == verdict; })) {
+      return verdict;
+    }
+  }
+  return "holds";
+}
 
 Report check(std::string_view text, const Limits& limits) {
   const nlohmann::json json = parse_json(text, limits);

@@ -36,11 +36,7 @@ Exit worse(Exit x, Exit y) {
 }
 
 Exit outcome(const Report& report) {
-  Exit code = all_hold;
-  for (const ClaimVerdict& claim : report.claims) {
-    if (claim.verdict != "holds") code = worse(code, claim.verdict == "violated" ? violated : undetermined);
-  }
-  return code;
+  return report.worst() == "violated" ? violated : report.worst() == "undetermined" ? undetermined : all_hold;
 }
 
 Report check_file(const std::string& name) {
