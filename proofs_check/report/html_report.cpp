@@ -244,7 +244,7 @@ std::string html_report(const Json& configuration, const Records& records, const
                                                                       : count(summary.trials) + " random models");
   std::string body = fmt::format("<h1>{}</h1>\n<p class=\"sub\">A campaign of verify_bound; {}.</p>\n", escape(title),
                                  reading_of(configuration));
-  body += verdict(summary, asked_trials(configuration, summary), replay, configuration.value("arith", "") == "exact");
+  body += verdict(summary, asked_trials(configuration, summary), replay, is_exact(configuration));
   body += campaign_tiles(summary);
   body += violations_section(records, summary, replay);
   body += claims_section(summary, replay);

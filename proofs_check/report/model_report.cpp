@@ -225,8 +225,8 @@ std::string html_report(const Json& configuration, const TrialRecord& record, co
   std::string body =
       fmt::format("<h1>{}</h1>\n<p class=\"sub\">{} states, {} actions, γ = {}, eps = {}; {}.</p>\n", escape(title),
                   count(e.states), count(e.actions), number(e.discount), number(e.eps), reading_of(configuration));
-  body += verdict(e, configuration.value("arith", "") == "exact") + sides_section(e) + rounds_section(e, rounds) +
-          claims_table(e) + model_facts(e);
+  body += verdict(e, is_exact(configuration)) + sides_section(e) + rounds_section(e, rounds) + claims_table(e) +
+          model_facts(e);
   return page(title, body + configuration_section(configuration));
 }
 

@@ -74,4 +74,8 @@ std::string reading_of(const nlohmann::ordered_json& configuration) {
   return paper ? "R_max read as the paper prints it, max(0, max R)" : "R_max read as max |R|, which the proof needs";
 }
 
+bool is_exact(const nlohmann::ordered_json& configuration) {
+  return configuration.is_object() && configuration.value("arith", nlohmann::ordered_json()) == "exact";
+}
+
 }  // namespace maximin::report
