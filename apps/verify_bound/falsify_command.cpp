@@ -19,10 +19,8 @@
 #include <maximin/apps/common/progress.hpp>
 #include <maximin/apps/common/table.hpp>
 #include <maximin/models/model_family.hpp>
-#include <maximin/models/rationalise.hpp>
 #include <maximin/models/shrink.hpp>
 #include <maximin/proofs_check/campaign.hpp>
-#include <maximin/proofs_check/certificate/exact_examination.hpp>
 #include <maximin/proofs_check/falsify/climb.hpp>
 #include <maximin/proofs_check/falsify/goal.hpp>
 #include <maximin/proofs_check/trial_file.hpp>
@@ -161,18 +159,6 @@ Model<double> shrunk_model(const FalsifyCommand& o, const Goal& goal, long resta
   return shrink(drawn.model, keeps, 3'000);
 }
 
-Verdict proved(const FalsifyCommand& o, const Goal& goal, const Model<double>& model) {
-  if (goal.claim) {
-    ExaminationOptions e = examination(o);
-    e.only = {*goal.claim};
-    return examine_exactly(rationalise(model), {}, e).check(*goal.claim).verdict;
-  }
-  if (goal.name == "sharper-belief") return Verdict::undetermined;
-  const Examination e = examine_exactly(rationalise(model), {}, examination(o));
-  if (e.fate == Fate::undetermined) return Verdict::undetermined;
-  return e.fate == Fate::cycles ? Verdict::violated : Verdict::holds;
-}
-
 /// The restarts from the best down.
 std::vector<long> ranked(const std::vector<double>& scores) {
   std::vector<long> order;
@@ -195,12 +181,12 @@ Found search(const FalsifyCommand& o, const Goal& goal, std::chrono::millisecond
     const double best = all[static_cast<std::size_t>(order[i])];
     if (found.hit() && !(best > goal.threshold)) break;
     Model<double> model = shrunk_model(o, goal, order[i], best);
-    const Verdict verdict = proved(o, goal, model);
+    const Verdict verdict = proved(goal, model, examination(o));
     if (found.model && verdict == Verdict::undetermined) continue;
     found.score = score(goal, model, examination(o));
     found.proved = verdict;
     found.model = std::move(model);
-    if (verdict != Verdict::undetermined || goal.name == "sharper-belief") break;
+    if (verdict != Verdict::undetermined) break;
   }
   if (!found.model) return found;
   found.model->name = fmt::format("{}: score {:.6g} (falsify, seed {})", goal.name, found.score, o.seed);
@@ -210,7 +196,6 @@ Found search(const FalsifyCommand& o, const Goal& goal, std::chrono::millisecond
 }
 
 const char* what_is_proved(const Found& f) {
-  if (!f.goal->claim && f.goal->name == "sharper-belief") return f.hit() ? "seen, with certified error" : "";
   switch (f.proved) {
     case Verdict::violated:
       return "refuted, proved exactly";
