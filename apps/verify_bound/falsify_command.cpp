@@ -56,7 +56,8 @@ struct Found {
   long restarts = 0;
   std::optional<Model<double>> model;  ///< shrunk
   double score = 0;
-  Verdict proved = Verdict::undetermined;  ///< of the model's claim in exact arithmetic; holds: not refuted
+  Verdict proved = Verdict::undetermined;  ///< of the goal in exact arithmetic; holds: not refuted
+  const Goal* found_for = nullptr;         ///< the goal whose search found the model
   std::string file;
 
   bool hit() const { return model && score > goal->threshold; }
@@ -175,7 +176,7 @@ std::vector<long> ranked(const std::vector<double>& scores) {
 Found search(const FalsifyCommand& o, const Goal& goal, std::chrono::milliseconds time) {
   constexpr std::size_t most_tries = 10;
   const std::vector<double> all = scores(o, goal, time);
-  Found found{&goal, static_cast<long>(all.size()), std::nullopt, -INFINITY, Verdict::undetermined, ""};
+  Found found{&goal, static_cast<long>(all.size()), std::nullopt, -INFINITY, Verdict::undetermined, &goal, ""};
   const std::vector<long> order = ranked(all);
   for (std::size_t i = 0; i < std::min(most_tries, order.size()); ++i) {
     const double best = all[static_cast<std::size_t>(order[i])];
@@ -188,11 +189,33 @@ Found search(const FalsifyCommand& o, const Goal& goal, std::chrono::millisecond
     found.model = std::move(model);
     if (verdict != Verdict::undetermined) break;
   }
-  if (!found.model) return found;
-  found.model->name = fmt::format("{}: score {:.6g} (falsify, seed {})", goal.name, found.score, o.seed);
-  found.file = save_under_new_name(std::filesystem::path(o.directory) / fmt::format("falsify-{}-{}", o.seed, goal.name),
-                                   *found.model);
   return found;
+}
+
+/// Tries the models of the other goals on this one, and takes the best of those that exact arithmetic says no less of.
+void adopt(const FalsifyCommand& o, Found& to, const std::vector<Found>& all) {
+  const Found own = to;
+  for (const Found& from : all) {
+    if (from.goal == own.goal || !from.model) continue;
+    const double better = score(*own.goal, *from.model, examination(o));
+    if (!(better > to.score)) continue;
+    const Verdict verdict = proved(*own.goal, *from.model, examination(o));
+    if (verdict == Verdict::undetermined && own.proved != Verdict::undetermined) continue;
+    to = {own.goal, own.restarts, from.model, better, verdict, from.goal, ""};
+  }
+}
+
+/// What each search found, on the best model of them all, which is written.
+std::vector<Found> shared(const FalsifyCommand& o, const std::vector<Found>& searched) {
+  std::vector<Found> all = searched;
+  for (Found& f : all) {
+    adopt(o, f, searched);
+    if (!f.model) continue;
+    f.model->name = fmt::format("{}: score {:.6g} (falsify, seed {})", f.goal->name, f.score, o.seed);
+    f.file = save_under_new_name(
+        std::filesystem::path(o.directory) / fmt::format("falsify-{}-{}", o.seed, f.goal->name), *f.model);
+  }
+  return all;
 }
 
 const char* what_is_proved(const Found& f) {
@@ -206,7 +229,22 @@ const char* what_is_proved(const Found& f) {
   }
 }
 
+/// What a search came to, in one line.
+std::string verdict_sentence(const Found& f) {
+  const std::string what = fmt::format("{} ({})", f.goal->name, f.goal->title);
+  if (!f.model) return fmt::format("{}: undetermined, no model was decided.\n", what);
+  if (!f.hit()) {
+    return fmt::format("{}: not refuted in {} restarts; the highest score is {}, and above {} would refute it.\n", what,
+                       f.restarts, apps::number(f.score), apps::number(f.goal->threshold));
+  }
+  const char* how = f.proved == Verdict::violated
+                        ? "REFUTED, proved exactly"
+                        : "REFUTED in floating point with certified error, not proved exactly";
+  return fmt::format("{}: {}: score {} on {}.\n", what, how, apps::number(f.score), f.file);
+}
+
 std::string results_text(const std::vector<Found>& all) {
+  std::string verdicts;
   apps::Table table;
   table.column("goal", apps::Align::left).column("", apps::Align::left).column("restarts");
   table.column("highest score", apps::Align::point).column("hit above").column("on that model", apps::Align::left);
@@ -214,11 +252,13 @@ std::string results_text(const std::vector<Found>& all) {
   for (const Found& f : all) {
     table.row({f.goal->name, f.goal->title, std::to_string(f.restarts), f.model ? apps::number(f.score) : "-",
                apps::number(f.goal->threshold), f.model ? what_is_proved(f) : "no model was decided", f.file});
+    verdicts += verdict_sentence(f);
   }
   return table.text() +
          "\nThe score of a claim is left/right: 1 is attained, above 1 refuted. Of settling it is the period (below 1: "
          "it\n"
-         "settles); of sharper-belief the loss as a part of span(R)/(1-gamma).\n";
+         "settles); of sharper-belief the loss as a part of span(R)/(1-gamma).\n\n" +
+         verdicts;
 }
 
 nlohmann::ordered_json results_json(const std::vector<Found>& all) {
@@ -230,6 +270,7 @@ nlohmann::ordered_json results_json(const std::vector<Found>& all) {
                              {"threshold", f.goal->threshold},
                              {"hit", f.hit()},
                              {"proved", f.model ? what_is_proved(f) : ""},
+                             {"found_for", f.model ? f.found_for->name : ""},
                              {"file", f.file}});
   }
   return json;
@@ -281,6 +322,7 @@ int run_falsify_command(const FalsifyCommand& options) {
     all.push_back(search(options, *goal, each));
     if (apps::stop_on_interrupt()) break;
   }
+  all = shared(options, all);
   apps::print(options.json ? apps::json_text(results_json(all)) : results_text(all));
   const bool complete = all.size() == asked.size() && !apps::stop_on_interrupt() &&
                         std::all_of(all.begin(), all.end(), [](const Found& f) { return f.model.has_value(); });

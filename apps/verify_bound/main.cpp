@@ -43,8 +43,8 @@ Examples:
   verify_bound check *.cert.json --json)";
 
 constexpr const char* falsify_examples =
-    R"(Random starts, hill climbing, shrinking. Exit codes: 0 no claim was refuted, 1 one was, 3 the search ended
-before every goal had a model.
+    R"(Random starts, hill climbing, shrinking; the best model of each goal is tried on the others too. Exit codes: 0 no claim
+was refuted, 1 one was, 3 the search ended before every goal had a model.
 Examples:
   verify_bound falsify                                   a minute for all goals: how tight is each bound?
   verify_bound falsify --goal theorem-1 --reading paper  the printed theorem falls in seconds

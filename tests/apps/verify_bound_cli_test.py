@@ -347,10 +347,32 @@ def check_falsify(program):
         others = run(program, [*arguments, "--goal", "settling,sharper-belief,E"], cwd=folder)
         found = {g["goal"]: g for out in (printed, others) for g in json.loads(out.stdout)["goals"]}
         problems = ["%s: %s" % (n, found[n]) for n in ("theorem-1", "settling", "sharper-belief") if not found[n]["hit"]]
+        if any(found[n]["proved"] != "refuted, proved exactly" for n in ("theorem-1", "settling", "sharper-belief")):
+            problems.append("not proved: %s" % found)
         if printed.returncode != 1 or others.returncode != 0 or found["E"]["hit"]:
             problems.append("exit codes %d and %d, %s" % (printed.returncode, others.returncode, found["E"]))
         again = run(program, [found["theorem-1"]["file"], "--reading", "paper", "--claims", "theorem-1"], cwd=folder)
         return problems if again.returncode == 1 else problems + ["the model does not violate Theorem 1 when read"]
+
+
+def check_falsify_shares(program):
+    """A goal takes over a better model of another one; the last lines are a verdict for each goal."""
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = ["falsify", "--restarts", "1", "--states", "2:3", "--seconds", "100", "--threads", "1", "--quiet"]
+        alone = {}
+        for goal in ("C", "D"):
+            out = run(program, [*arguments, "--goal", goal, "--steps", "60", "--json"], cwd=folder).stdout
+            alone[goal] = json.loads(out)["goals"][0]
+        both = run(program, [*arguments, "--goal", "C,D", "--steps", "60", "--json"], cwd=folder)
+        text = run(program, [*arguments, "--goal", "C,D", "--steps", "60"], cwd=folder).stdout.decode()
+        problems = []
+        for g in json.loads(both.stdout)["goals"]:
+            if g["score"] < alone[g["goal"]]["score"] or (g["found_for"] != g["goal"]) != (g["score"] > alone[g["goal"]]["score"]):
+                problems.append("%s: %s, alone %s" % (g["goal"], g, alone[g["goal"]]))
+        last = text.rstrip("\n").split("\n")[-2:]
+        if [line.split(" ")[0] for line in last] != ["C", "D"] or any("not refuted in 1 restarts" not in line for line in last):
+            problems.append("last lines %r" % last)
+        return problems
 
 
 CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
