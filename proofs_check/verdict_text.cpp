@@ -6,6 +6,8 @@
 
 #include <fmt/ranges.h>
 
+#include <maximin/theory/rational.hpp>
+
 namespace maximin {
 namespace {
 
@@ -88,7 +90,8 @@ std::string conclusion(const CampaignSummary& s, std::string_view draw, bool com
   }
 }
 
-std::string witness(const char* name, const LipschitzConstant<double>& c, const Model<double>& model) {
+template <class Scalar>
+std::string witness(const char* name, const LipschitzConstant<double>& c, const Model<Scalar>& model) {
   const std::string pair = fmt::format("states {} and {}", model.state_name(c.s1), model.state_name(c.s2));
   if (c.infinite) return fmt::format("  {:<14} infinite: {} at distance 0 differ\n", name, pair);
   if (c.s1 == c.s2) return fmt::format("  {:<14} {:.6g}\n", name, c.value);
@@ -113,7 +116,8 @@ std::string fate_text(const Examination& e, bool exact) {
 }
 
 /// "at n = 4, states 1 and 2, action 0": where the tightest instance of a claim stands.
-std::string place_text(const Check& check, const Model<double>& model) {
+template <class Scalar>
+std::string place_text(const Check& check, const Model<Scalar>& model) {
   std::vector<std::string> parts;
   const Place& at = check.place;
   if (check.n >= 0) parts.push_back(fmt::format("n = {}", check.n));
@@ -126,7 +130,8 @@ std::string place_text(const Check& check, const Model<double>& model) {
   return parts.empty() ? "" : fmt::format("at {}", fmt::join(parts, ", "));
 }
 
-std::string check_row(const Claim& claim, const Check& check, bool informative, const Model<double>& model) {
+template <class Scalar>
+std::string check_row(const Claim& claim, const Check& check, bool informative, const Model<Scalar>& model) {
   if (check.verdict == Verdict::not_asked) return "";
   if (check.verdict == Verdict::undetermined || check.verdict == Verdict::assumption_fails) {
     return fmt::format("  {:<16} {:<32} {}\n", claim.name, claim.title, to_string(check.verdict));
@@ -173,7 +178,8 @@ std::string verdict_text(const CampaignSummary& s, const ExaminationOptions& opt
   return text + conclusion(s, draw, complete, options.exact);
 }
 
-std::string verdict_text(std::string_view title, const Model<double>& model, const Examination& e,
+template <class Scalar>
+std::string verdict_text(std::string_view title, const Model<Scalar>& model, const Examination& e,
                          const ExaminationOptions& options) {
   std::string text = fmt::format("{}: {}, {}, gamma {:g}, eps {:g}, largest ball {}\nreading {}\n\n", title,
                                  counted(e.states, "state"), counted(e.actions, "action"), e.discount, e.eps,
@@ -212,6 +218,11 @@ std::string verdict_text(std::string_view title, const Model<double>& model, con
                                 vacuous == bounds_checked ? "; but every bound is vacuous here." : ".");
   }
 }
+
+template std::string verdict_text(std::string_view, const Model<double>&, const Examination&,
+                                  const ExaminationOptions&);
+template std::string verdict_text(std::string_view, const Model<Rational>&, const Examination&,
+                                  const ExaminationOptions&);
 
 std::string claims_text() {
   std::string text;

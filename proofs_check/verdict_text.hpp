@@ -26,7 +26,8 @@ std::string verdict_text(const CampaignSummary& summary, const ExaminationOption
 
 /// One model for a person to read, called `title`: constants with the pairs of states that attain them, every claim
 /// with both sides and where it is tightest, states and actions by the model's names, and the verdict last.
-std::string verdict_text(std::string_view title, const Model<double>& model, const Examination& found,
+template <class Scalar>
+std::string verdict_text(std::string_view title, const Model<Scalar>& model, const Examination& found,
                          const ExaminationOptions& options);
 
 /// What the claims state, in their order, with their references and the symbols that they use.

@@ -117,6 +117,15 @@ Model<Scalar> with_remarks(Model<Scalar> model) {
   return model;
 }
 
+template <class Scalar>
+void remark_on_default_metric(const Model<Scalar>& model, const ModelOptions& options) {
+  if (model.geometry.kind != Geometry<Scalar>::Kind::none || !options.metric.empty()) return;
+  remark(
+      fmt::format("the model says nothing of distances: hops in the transition graph are taken{}; --metric and --eps "
+                  "choose otherwise",
+                  options.eps ? "" : ", and eps = 1"));
+}
+
 }  // namespace
 
 Model<double> load(const ModelOptions& options) {
@@ -126,7 +135,10 @@ Model<double> load(const ModelOptions& options) {
 
 Model<Rational> load_exactly(const ModelOptions& options) {
   refuse_none_and_both(options);
-  return with_remarks(options.example.empty() ? load_file<Rational>(options) : rationalise(load_example(options)));
+  auto model =
+      with_remarks(options.example.empty() ? load_file<Rational>(options) : rationalise(load_example(options)));
+  remark_on_default_metric(model, options);
+  return model;
 }
 
 std::string title(const std::string& name, const ModelOptions& options) {
@@ -155,12 +167,7 @@ GeometryOverrides<Rational> exact_overrides(const ModelOptions& options) {
 }
 
 Perturbation<double> make_perturbation(const Model<double>& model, const ModelOptions& options) {
-  if (model.geometry.kind == Kind::none && options.metric.empty()) {
-    remark(
-        fmt::format("the model says nothing of distances: hops in the transition graph are taken{}; --metric and "
-                    "--eps choose otherwise",
-                    options.eps ? "" : ", and eps = 1"));
-  }
+  remark_on_default_metric(model, options);
   return maximin::make_perturbation(model, geometry_overrides(options));
 }
 

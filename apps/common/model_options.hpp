@@ -35,7 +35,7 @@ void declare(CLI::App& app, ModelOptions& options);
 Model<double> load(const ModelOptions& options);
 
 /// The same in exact arithmetic: the numbers of a file as they stand there; those of an example, and those of the
-/// command line, as the decimals that they are.
+/// command line, as the decimals that they are. Prints a note also where the metric is a default that nobody asked for.
 Model<Rational> load_exactly(const ModelOptions& options);
 
 /// What to call a model: its own name, if it is not empty, else that of the example or the file.

@@ -5,6 +5,8 @@
 #include <maximin/apps/common/json_output.hpp>
 #include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
+#include <maximin/models/make_perturbation.hpp>
+#include <maximin/models/rationalise.hpp>
 #include <maximin/proofs_check/certificate/exact_examination.hpp>
 #include <maximin/proofs_check/report/html_report.hpp>
 #include <maximin/proofs_check/report/round_series.hpp>
@@ -12,21 +14,33 @@
 #include "outcome.hpp"
 
 namespace maximin::verify_bound {
+namespace {
 
-int run_model_command(const Options& options) {
-  const Model<double> model = apps::load(options.model);
-  const Perturbation<double> perturbation = apps::make_perturbation(model, options.model);
+Examination examined(const Model<double>& model, const Options& options) {
+  return examine(model.mdp, apps::make_perturbation(model, options.model), examination_options(options));
+}
+
+Examination examined(const Model<Rational>& model, const Options& options) {
+  return examine_exactly(model, apps::exact_overrides(options.model), examination_options(options));
+}
+
+RoundSeries rounds_of(const Model<double>& model, const Options& options) {
+  const auto balls = make_perturbation(model, apps::geometry_overrides(options.model));
+  return round_series(model.mdp, balls, examination_options(options));
+}
+
+RoundSeries rounds_of(const Model<Rational>& model, const Options& options) {
+  return rounds_of(rounded(model), options);
+}
+
+template <class Scalar>
+int run(const Model<Scalar>& model, const Options& options) {
   const std::string source = options.model.file.empty() ? options.model.example : options.model.file;
-  const ExaminationOptions asked = examination_options(options);
-  const TrialRecord record{
-      0, source,
-      asked.exact ? examine_exactly(apps::load_exactly(options.model), apps::exact_overrides(options.model), asked)
-                  : examine(model.mdp, perturbation, asked)};
+  const TrialRecord record{0, source, examined(model, options)};
   nlohmann::ordered_json how = configuration(options);
   how["model"] = source;
   if (!options.report.empty()) {
-    const auto rounds = round_series(model.mdp, perturbation, examination_options(options));
-    apps::write_file(options.report, html_report(how, record, rounds), apps::Overwrite::replace);
+    apps::write_file(options.report, html_report(how, record, rounds_of(model, options)), apps::Overwrite::replace);
   }
   if (options.json) {
     nlohmann::ordered_json json{
@@ -37,9 +51,15 @@ int run_model_command(const Options& options) {
     apps::print(apps::json_text(json));
   } else {
     const std::string title = apps::printable(apps::title(model.name, options.model));
-    apps::print(verdict_text(title, model, record.found, asked));
+    apps::print(verdict_text(title, model, record.found, examination_options(options)));
   }
   return exit_code(outcome(record.found));
+}
+
+}  // namespace
+
+int run_model_command(const Options& options) {
+  return is_exact(options) ? run(apps::load_exactly(options.model), options) : run(apps::load(options.model), options);
 }
 
 }  // namespace maximin::verify_bound
