@@ -142,6 +142,26 @@ std::string check_row(const Claim& claim, const Check& check, bool informative, 
                      place_text(check, model));
 }
 
+/// What the table of claims shows of an exact run, which is not what one in floating point shows.
+std::string sides_legend(const Examination& e, const ExaminationOptions& options) {
+  if (!options.exact) return "";
+  std::string text =
+      "\n  left <= right and left/right are of the instance with the least right - left, not with the largest "
+      "left/right\n";
+  bool enclosed = false, huge = false;
+  for (const ClaimId id : {ClaimId::lemma_1_iterates, ClaimId::lemma_2}) {
+    enclosed = enclosed || (e.fate != Fate::undetermined && e.check(id).n >= e.iterations);
+  }
+  for (const Check& check : e.checks) huge = huge || !std::isfinite(check.left) || !std::isfinite(check.right);
+  if (enclosed) {
+    text += fmt::format(
+        "  lemma-1-iterates and lemma-2 from n = {} on: left is an upper bound for all rounds of one phase\n",
+        e.iterations);
+  }
+  if (huge) text += "  inf: beyond floating point; verify_bound certify writes the exact numbers\n";
+  return text;
+}
+
 }  // namespace
 
 Outcome outcome(const CampaignSummary& s, bool complete) {
@@ -165,9 +185,11 @@ std::string verdict_text(const CampaignSummary& s, const ExaminationOptions& opt
     const ClaimSummary& cs = s.claims[static_cast<std::size_t>(c.id)];
     if (cs.checked() + cs.undetermined + cs.assumption_fails > 0) text += claim_row(c, cs);
   }
-  text +=
-      "\n  informative: the bound is below gamma span(R)/(1-gamma); median, p99 and max are of (left - slack) / "
-      "right\n  What each claim states: verify_bound --explain\n\n";
+  text += fmt::format(
+      "\n  informative: the bound is below gamma span(R)/(1-gamma); median, p99 and max are of {}\n  What each claim "
+      "states: verify_bound --explain\n\n",
+      options.exact ? "left / right where right - left\n  is least on a model, not of the largest left / right"
+                    : "(left - slack) / right");
   text += fmt::format("Q_n settled on {}, cycled on {}{}, neither on {}\n", s.settled, s.cycles, periods(s),
                       s.fate_undetermined);
   text += fmt::format(
@@ -203,6 +225,7 @@ std::string verdict_text(std::string_view title, const Model<Scalar>& model, con
     bounds_checked += c.is_bound && checked;
     vacuous += c.is_bound && checked && !e.informative(c.id);
   }
+  text += sides_legend(e, options);
   switch (outcome(e)) {
     case Outcome::violated:
       return text + "\nVIOLATED: a claim above fails on this model.\n";

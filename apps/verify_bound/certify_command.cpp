@@ -1,5 +1,6 @@
 #include "certify_command.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -22,10 +23,17 @@
 namespace maximin::verify_bound {
 namespace {
 
+/// x beyond floating point in six digits.
+std::string huge(const Rational& x) {
+  const std::string digits = Integer(abs(numerator(x)) / denominator(x)).str();
+  return fmt::format("{}{}.{}e+{}", x < 0 ? "-" : "", digits[0], digits.substr(1, 5), digits.size() - 1);
+}
+
 /// x in six digits, and exactly where that is as short.
 std::string shown(const Rational& x) {
   const std::string exact = x.str();
-  const std::string rounded = apps::number(static_cast<double>(x));
+  const auto near = static_cast<double>(x);
+  const std::string rounded = std::isfinite(near) ? apps::number(near) : huge(x);
   return exact == rounded || exact.size() > 14 ? rounded : fmt::format("{} = {}", rounded, exact);
 }
 

@@ -375,6 +375,40 @@ def check_falsify_shares(program):
         return problems
 
 
+def check_huge(program):
+    """Numbers beyond floating point: certify and --exact agree, and floating point refuses them."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "huge.json"), "w") as f:
+            f.write(model(rewards=[["0"], ["1e400"]], points=[[0], [1]], norm="l1", eps=1))
+        made = run(program, ["certify", "huge.json", "-o", "c.json"], cwd=folder)
+        exact = run(program, ["huge.json", "--exact"], cwd=folder)
+        rounded = run(program, ["huge.json"], cwd=folder)
+        ok = (made.returncode, exact.returncode, rounded.returncode) == (0, 0, 2)
+        says = b".00000e+400" in made.stdout and b"inf: beyond floating point" in exact.stdout
+        return [] if ok and says else ["%r" % [made, exact, rounded]]
+
+
+def check_notes_once(program):
+    """A model read for exact work is read once: what is assumed of it is told once, by --exact as by certify."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "m.json"), "w") as f:
+            f.write(model(notes=["told once"]))
+        results = [run(program, a, cwd=folder) for a in (["m.json"], ["m.json", "--exact"], ["certify", "m.json", "-o", "c.json"])]
+        problems = []
+        for result in results:
+            if result.stderr.count(b"told once") != 1 or result.stderr.count(b"says nothing of distances") != 1:
+                problems.append("standard error %r" % result.stderr)
+        return problems
+
+
+def check_exact_legend(program):
+    """An exact table says which instance it shows; one in floating point shows the largest ratio and says no such thing."""
+    exact = run(program, ["--example", "cycling", "--exact"]).stdout
+    floating = run(program, ["--example", "cycling"]).stdout
+    says = b"least right - left" in exact and b"left is an upper bound for all rounds of one phase" in exact
+    return [] if says and b"right - left" not in floating else ["%r" % exact]
+
+
 CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
           check_replay_hint, check_vacuous, check_assumption, check_terminal, check_report, check_explain, check_sigkill,
           check_sigint]
