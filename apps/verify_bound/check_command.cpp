@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <maximin/apps/common/json_output.hpp>
@@ -47,7 +47,9 @@ std::string text(const std::string& file, const checker::Report& report) {
   const char* verdict = outcome == Outcome::violated       ? "a claim is violated, and that is proved"
                         : outcome == Outcome::undetermined ? "what holds is proved; a claim is open"
                                                            : "all that it claims is proved";
-  return fmt::format("{}: a valid certificate; {}\n\n{}\n", apps::printable(file), verdict, table.text());
+  const std::string left_out =
+      report.left_out.empty() ? "" : fmt::format("not in this certificate: {}\n", fmt::join(report.left_out, ", "));
+  return fmt::format("{}: a valid certificate; {}\n\n{}{}\n", apps::printable(file), verdict, table.text(), left_out);
 }
 
 nlohmann::ordered_json report_json(const std::string& file, const checker::Report& report) {
@@ -58,6 +60,7 @@ nlohmann::ordered_json report_json(const std::string& file, const checker::Repor
     entry["left"] = c.left;
     entry["right"] = c.right;
   }
+  json["left_out"] = report.left_out;
   return json;
 }
 

@@ -41,7 +41,7 @@ Report check_sections(const Node& root) {
   if (!belief_game.is_null()) game = check_belief_game(belief_game, model, q_star, highest);
   claims.of_belief_game(game ? &*game : nullptr);
 
-  Report report{model.states, model.actions, n, phases, {}};
+  Report report{model.states, model.actions, n, phases, {}, left_out(checks)};
   for (const ClaimCheck& check : checks) {
     if (!check.undetermined()) check.verify();
     report.claims.push_back(check.verdict());

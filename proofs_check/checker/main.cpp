@@ -68,6 +68,7 @@ void print_table(const std::string& name, const Report& report) {
     }
     std::printf("\n");
   }
+  for (const std::string& claim : report.left_out) std::printf("%-16s  not in this certificate\n", claim.c_str());
 }
 
 nlohmann::ordered_json to_json(const std::string& name, const Report& report) {
@@ -80,7 +81,7 @@ nlohmann::ordered_json to_json(const std::string& name, const Report& report) {
     }
     claims.push_back(std::move(entry));
   }
-  return {{"file", name}, {"exit_code", outcome(report)}, {"claims", std::move(claims)}};
+  return {{"file", name}, {"exit_code", outcome(report)}, {"claims", std::move(claims)}, {"left_out", report.left_out}};
 }
 
 Exit run(const std::vector<std::string>& files, bool json) {

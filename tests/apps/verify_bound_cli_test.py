@@ -409,6 +409,19 @@ def check_exact_legend(program):
     return [] if says and b"right - left" not in floating else ["%r" % exact]
 
 
+def check_left_out(program):
+    """Claims that a certificate says nothing of are named."""
+    with tempfile.TemporaryDirectory() as folder:
+        certified(program, folder, "--example", "one-sided", "--claims", "E,lemma-2")
+        some = run(program, ["check", "c.json"], cwd=folder).stdout
+        listed = json.loads(run(program, ["check", "c.json", "--json"], cwd=folder).stdout)["certificates"][0]["left_out"]
+        certified(program, folder, "--example", "one-sided")
+        every = run(program, ["check", "c.json"], cwd=folder).stdout
+        line = b"not in this certificate: lemma-1, lemma-1-iterates, lemma-3, theorem-1, A, B, C, D, F\n"
+        ok = line in some and len(listed) == 9 and b"not in this certificate" not in every
+        return [] if ok else ["%r, %r, %r" % (some, listed, every)]
+
+
 CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
           check_replay_hint, check_vacuous, check_assumption, check_terminal, check_report, check_explain, check_sigkill,
           check_sigint]
