@@ -36,10 +36,11 @@ Examples:
 
 constexpr const char* check_examples =
     R"(The checker shares no code with certify. Exit codes: 0 all that is claimed is proved, 1 a claim is violated and that is
-proved, 2 not a certificate (one line says where), 3 a claim is open. An independent one in plain Python:
-proofs_check/check_certificate.py.
+proved, 2 not a certificate (one line says where), 3 a claim is open; of several the worst, in the order 2, 1, 3, 0. An
+independent one in plain Python: proofs_check/check_certificate.py.
 Examples:
   verify_bound check lake.cert.json
+  verify_bound certify --example cycling -o - | verify_bound check -
   verify_bound check *.cert.json --json)";
 
 constexpr const char* falsify_examples =

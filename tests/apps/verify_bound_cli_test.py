@@ -422,6 +422,26 @@ def check_left_out(program):
         return [] if ok else ["%r, %r, %r" % (some, listed, every)]
 
 
+def check_goes_on(program):
+    """A bad file does not keep the others from being checked, and the exit code is that of the worst."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        certified(program, folder, "--example", "one-sided", "--reading", "paper")
+        os.rename(os.path.join(folder, "c.json"), os.path.join(folder, "violated.json"))
+        certified(program, folder, "--example", "one-sided")
+        with open(os.path.join(folder, "bad.json"), "w") as f:
+            f.write("{")
+        for files, code in ((["bad.json", "violated.json", "c.json"], 2), (["c.json", "violated.json"], 1), (["c.json"], 0)):
+            text = run(program, ["check", *files], cwd=folder)
+            listed = json.loads(run(program, ["check", *files, "--json"], cwd=folder).stdout)["certificates"]
+            codes = {"bad.json": 2, "violated.json": 1, "c.json": 0}
+            if text.returncode != code or text.stdout.count(b"a valid certificate") != len(files) - ("bad.json" in files):
+                problems.append("%s: exit code %d, %r" % (files, text.returncode, text.stdout))
+            if text.stderr.count(b"\n") != ("bad.json" in files) or [c["exit_code"] for c in listed] != [codes[f] for f in files]:
+                problems.append("%s: %r, %s" % (files, text.stderr, listed))
+    return problems
+
+
 CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
           check_replay_hint, check_vacuous, check_assumption, check_terminal, check_report, check_explain, check_sigkill,
           check_sigint]
