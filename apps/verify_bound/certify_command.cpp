@@ -113,7 +113,10 @@ std::optional<Certificate> certify_unless_interrupted(const Model<Rational>& mod
 void declare(CLI::App& command, CertifyCommand& o) {
   apps::declare(command, o.model);
   const std::string group = "Proof";
-  command.add_option("-o,--output", o.output, "write the certificate to this file")
+  command
+      .add_option(
+          "-o,--output", o.output,
+          "write the certificate to this file; - is standard output, and\nthe verdict then a note on standard error")
       ->required()
       ->type_name("FILE")
       ->group(group);
@@ -143,7 +146,9 @@ int run_certify_command(const CertifyCommand& options) {
   asked.only = claims_named(options.claims);
   asked.stop = &apps::stop_on_interrupt();
   const auto overwrite = options.force ? apps::Overwrite::replace : apps::Overwrite::refuse;
-  if (!options.force && std::filesystem::exists(options.output)) {
+  const bool piped = options.output == "-";
+  if (piped && options.json) throw InputError("--json: standard output takes the certificate (-o -), expected a file");
+  if (!piped && !options.force && std::filesystem::exists(options.output)) {
     throw InputError(fmt::format("--output: {} exists, expected a new name or --force", options.output));
   }
   const Model<Rational> model = apps::load_exactly(options.model);
@@ -153,8 +158,13 @@ int run_certify_command(const CertifyCommand& options) {
     return apps::ExitCode::interrupted;
   }
   const Certificate& certificate = *made;
-  apps::write_file(options.output, certificate_json(certificate), overwrite);
   const Outcome outcome = outcome_of(certificate);
+  if (piped) {
+    apps::print(certificate_json(certificate));
+    apps::note(conclusion(outcome));
+    return exit_code(outcome);
+  }
+  apps::write_file(options.output, certificate_json(certificate), overwrite);
   if (options.json) {
     apps::print(apps::json_text(summary_json(options, certificate, outcome)));
   } else {

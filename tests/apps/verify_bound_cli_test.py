@@ -64,6 +64,7 @@ REFUSALS = [
     Refusal(["m.json"], 2, "m.json: $.epsilon: unknown name, expected 'eps'?", {"m.json": model(epsilon=1)}),
     Refusal(["certify", "--example", "cycling"], 2, "--output"),
     Refusal(["certify", "--example", "cycling", "-o", "there.json"], 2, "there.json exists", {"there.json": "kept"}),
+    Refusal(["certify", "--example", "cycling", "-o", "-", "--json"], 2, "--json: standard output takes the certificate"),
     Refusal(["certify", "m.json", "-o", "c.json"], 4, "Assumption 1", {"m.json": model(points=[[0], [0]], norm="l1", eps=1)}),
     *[Refusal([*given, *command], 2, "%s: has no effect before %s" % (given[0], command[0]))
       for given, command in ((["--reading", "paper"], ["certify", "--example", "one-sided", "-o", "z.json"]),
@@ -440,6 +441,19 @@ def check_goes_on(program):
             if text.stderr.count(b"\n") != ("bad.json" in files) or [c["exit_code"] for c in listed] != [codes[f] for f in files]:
                 problems.append("%s: %r, %s" % (files, text.stderr, listed))
     return problems
+
+
+def check_pipe(program):
+    """certify -o - writes the certificate to standard output and nothing else; check - reads it from standard input."""
+    with tempfile.TemporaryDirectory() as folder:
+        certificate = certified(program, folder, "--example", "one-sided", "--reading", "paper")[2]
+        piped = run(program, ["certify", "--example", "one-sided", "--reading", "paper", "-o", "-"], cwd=folder)
+        checked = run(program, ["check", "-"], cwd=folder, input=piped.stdout)
+        tampered = run(program, ["check", "-"], cwd=folder, input=piped.stdout.replace(b'"right":"6"', b'"right":"7"'))
+        ok = json.loads(piped.stdout) == certificate and os.listdir(folder) == ["c.json"]
+        empty = run(program, ["check", "-"], cwd=folder, input=b"")
+        codes = [r.returncode for r in (piped, checked, tampered, empty)]
+        return [] if ok and codes == [1, 1, 2, 2] else ["exit codes %s, %r, %r" % (codes, piped.stderr, tampered.stderr)]
 
 
 CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
