@@ -49,8 +49,10 @@ void declare_checks(CLI::App& program, Options& o) {
       ->group(group);
   program
       .add_option("--arith", o.arith,
-                  "double, floating point with certified error (the default), or\nexact, rational numbers: what holds "
-                  "is proved")
+                  "double, floating point with certified error (the default), or\n"
+                  "exact, rational numbers: what holds is proved; random models\n"
+                  "then have short numbers: rewards and gamma of 3 decimals,\n"
+                  "probabilities in multiples of 1/4096")
       ->check(apps::one_of({"double", "exact"}))
       ->type_name("WORD")
       ->group(group);
