@@ -165,6 +165,10 @@ void declare(CLI::App& program, Options& o) {
 }
 
 void check_combination(const CLI::App& program, const Options& o) {
+  if (const auto asked = program.get_option("--arith")->results();
+      program.count("--exact") > 0 && !asked.empty() && asked.front() != "exact") {
+    throw InputError(fmt::format("--exact: given beside --arith {}, expected one of the two", asked.front()));
+  }
   if (!o.model.given()) {
     const std::string where = "on random models";
     apps::refuse_given(program, {"--discount"}, where, "--gamma, or --model or --example beside it");

@@ -76,6 +76,8 @@ REFUSALS = [
     Refusal(["falsify", "--resume"], 2, "--trials-out"),
     Refusal(["falsify", "--states", "9:3"], 2, "LOW:HIGH"),
     Refusal(["--arith", "decimal"], 2, "exact"),
+    *[Refusal([*given, "--trials", "1"], 2, "--exact: given beside --arith double, expected one of the two")
+      for given in (["--exact", "--arith", "double"], ["--arith", "double", "--exact"])],
     Refusal(["m.json", "--model", "m.json"], 2, "given more than once", {"m.json": model()}),
     Refusal(["--trials", "1", "--trials-out", "no-such-folder/t.jsonl"], 2, "no-such-folder/t.jsonl"),
     Refusal(["--trials", "1", "--violation-dir", "no-such-folder"], 2,
