@@ -30,10 +30,13 @@ struct ExaminationOptions {
   std::optional<std::set<ClaimId>> only = {};  ///< absent: all
   long max_period = 64;                        ///< the longest cycle of policy pairs that is looked for
   TieBreak tie = TieBreak::lowest_index;
-  bool exact = false;  ///< of a campaign: each model in exact arithmetic (certificate/exact_examination.hpp)
+  bool exact = false;     ///< of a campaign: each model in exact arithmetic (certificate/exact_examination.hpp)
+  bool pedantic = false;  ///< of what is told of it: what holds in floating point alone is undetermined
   const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: the examination ends with Interrupted
 
   bool wants(ClaimId id) const { return !only || only->contains(id); }
+  /// Whether what holds is told as undetermined, since it only held within rounding.
+  bool doubts_what_holds() const { return pedantic && !exact; }
 };
 
 /// Everything that was found out about one model.

@@ -11,6 +11,9 @@
 namespace maximin {
 namespace {
 
+constexpr const char* only_within_rounding =
+    "held within rounding, not certified (--pedantic); --exact proves what holds.";
+
 std::string percent(long part, long whole) {
   if (whole == 0) return "-";
   return fmt::format("{:.1f}%", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
@@ -47,9 +50,10 @@ std::string periods(const CampaignSummary& s) {
   return text.empty() ? text : text + ")";
 }
 
-std::string conclusion(const CampaignSummary& s, std::string_view draw, bool complete, bool exact) {
+std::string conclusion(const CampaignSummary& s, std::string_view draw, bool complete,
+                       const ExaminationOptions& options) {
   const char* interrupted = complete ? "" : " The run was interrupted; --resume completes it.";
-  switch (outcome(s, complete)) {
+  switch (outcome(s, complete, options)) {
     case Outcome::violated: {
       std::string lines;
       for (const Claim& c : claims()) {
@@ -73,6 +77,10 @@ std::string conclusion(const CampaignSummary& s, std::string_view draw, bool com
             "campaign verifies nothing. Ask for smaller eps, gamma or l_p, or --family informative.{}\n",
             interrupted);
       }
+      if (complete && outcome(s, complete) == Outcome::holds) {
+        return fmt::format("UNDETERMINED: no violation in {}, but what held there {}\n", counted(s.trials, "model"),
+                           only_within_rounding);
+      }
       return fmt::format("UNDETERMINED: {} and no violation.{}\n", counted(s.trials, "model"), interrupted);
     case Outcome::assumption_fails:
       return fmt::format("ASSUMPTION FAILS on {} of {}; no violation on the others.\n", s.assumption_failures,
@@ -85,8 +93,8 @@ std::string conclusion(const CampaignSummary& s, std::string_view draw, bool com
           s.undetermined == 0
               ? ""
               : fmt::format("Some claim is undetermined on {} of them: a budget ran out.\n", s.undetermined),
-          exact ? "Proved for each of them in exact arithmetic; of other models nothing is proved."
-                : "Seen in floating point, with certified numerical error; not a proof.");
+          options.exact ? "Proved for each of them in exact arithmetic; of other models nothing is proved."
+                        : "Seen in floating point, with certified numerical error; not a proof.");
   }
 }
 
@@ -131,15 +139,17 @@ std::string place_text(const Check& check, const Model<Scalar>& model) {
 }
 
 template <class Scalar>
-std::string check_row(const Claim& claim, const Check& check, bool informative, const Model<Scalar>& model) {
+std::string check_row(const Claim& claim, const Check& check, bool informative, const Model<Scalar>& model,
+                      const ExaminationOptions& options) {
   if (check.verdict == Verdict::not_asked) return "";
   if (check.verdict == Verdict::undetermined || check.verdict == Verdict::assumption_fails) {
     return fmt::format("  {:<16} {:<32} {}\n", claim.name, claim.title, to_string(check.verdict));
   }
+  const bool doubted = check.verdict == Verdict::holds && options.doubts_what_holds();
+  const std::string_view verdict = doubted ? "held" : to_string(check.verdict);
   const char* worth = !claim.is_bound ? "" : informative ? "informative" : "vacuous";
-  return fmt::format("  {:<16} {:<32} {:<9} {:>13.6g} <= {:<13.6g} {:>8} {:<12} {}\n", claim.name, claim.title,
-                     to_string(check.verdict), check.left, check.right, ratio(check.tightness()), worth,
-                     place_text(check, model));
+  return fmt::format("  {:<16} {:<32} {:<9} {:>13.6g} <= {:<13.6g} {:>8} {:<12} {}\n", claim.name, claim.title, verdict,
+                     check.left, check.right, ratio(check.tightness()), worth, place_text(check, model));
 }
 
 /// What the table of claims shows of an exact run, which is not what one in floating point shows.
@@ -164,16 +174,18 @@ std::string sides_legend(const Examination& e, const ExaminationOptions& options
 
 }  // namespace
 
-Outcome outcome(const CampaignSummary& s, bool complete) {
+Outcome outcome(const CampaignSummary& s, bool complete, const ExaminationOptions& options) {
   if (s.violations > 0) return Outcome::violated;
   if (!complete || s.vacuous() || s.some_claim_never_decided()) return Outcome::undetermined;
-  return s.assumption_failures > 0 ? Outcome::assumption_fails : Outcome::holds;
+  if (s.assumption_failures > 0) return Outcome::assumption_fails;
+  return options.doubts_what_holds() ? Outcome::undetermined : Outcome::holds;
 }
 
-Outcome outcome(const Examination& e) {
+Outcome outcome(const Examination& e, const ExaminationOptions& options) {
   if (e.any(Verdict::violated)) return Outcome::violated;
   if (e.any(Verdict::assumption_fails)) return Outcome::assumption_fails;
-  return e.any(Verdict::undetermined) ? Outcome::undetermined : Outcome::holds;
+  const bool doubted = options.doubts_what_holds() && e.any(Verdict::holds);
+  return doubted || e.any(Verdict::undetermined) ? Outcome::undetermined : Outcome::holds;
 }
 
 std::string verdict_text(const CampaignSummary& s, const ExaminationOptions& options, std::string_view draw,
@@ -197,7 +209,7 @@ std::string verdict_text(const CampaignSummary& s, const ExaminationOptions& opt
       s.balls_of_several, s.attack_changes_action, s.pessimism_changes_action);
   text += fmt::format("At least one bound informative on {} ({})\n\n", s.any_informative,
                       percent(s.any_informative, s.trials));
-  return text + conclusion(s, draw, complete, options.exact);
+  return text + conclusion(s, draw, complete, options);
 }
 
 template <class Scalar>
@@ -220,16 +232,19 @@ std::string verdict_text(std::string_view title, const Model<Scalar>& model, con
   long vacuous = 0, bounds_checked = 0;
   for (const Claim& c : claims()) {
     const Check& check = e.check(c.id);
-    text += check_row(c, check, e.informative(c.id), model);
+    text += check_row(c, check, e.informative(c.id), model, options);
     const bool checked = check.verdict == Verdict::holds || check.verdict == Verdict::violated;
     bounds_checked += c.is_bound && checked;
     vacuous += c.is_bound && checked && !e.informative(c.id);
   }
   text += sides_legend(e, options);
-  switch (outcome(e)) {
+  switch (outcome(e, options)) {
     case Outcome::violated:
       return text + "\nVIOLATED: a claim above fails on this model.\n";
     case Outcome::undetermined:
+      if (!e.any(Verdict::undetermined)) {
+        return text + fmt::format("\nUNDETERMINED: what held above {}\n", only_within_rounding);
+      }
       return text +
              (options.exact
                   ? "\nUNDETERMINED: what holds above is proved, a claim is open; verify_bound certify says more.\n"

@@ -13,11 +13,11 @@ namespace maximin {
 enum class Outcome { holds, violated, undetermined, assumption_fails };
 
 /// What a campaign comes to: violated before everything; undetermined when it was interrupted or every
-/// bound was vacuous, for then nothing was verified.
-Outcome outcome(const CampaignSummary& summary, bool complete);
+/// bound was vacuous, for then nothing was verified, or when what holds is doubted.
+Outcome outcome(const CampaignSummary& summary, bool complete, const ExaminationOptions& options = {});
 
 /// The same for one model. A vacuous bound that holds, holds.
-Outcome outcome(const Examination& examination);
+Outcome outcome(const Examination& examination, const ExaminationOptions& options = {});
 
 /// A campaign for a person to read: a table of claims, fates, regimes, and the verdict last. `draw` are the options of
 /// verify_bound that draw its models, e.g. "--seed 1 --family broad".

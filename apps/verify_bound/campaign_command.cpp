@@ -152,9 +152,9 @@ Json summary_json(const Options& options, const CampaignSummary& summary, bool c
   Json json{{"format", "maximin-campaign"},
             {"version", 1},
             {"maximin", MAXIMIN_VERSION},
-            {"configuration", configuration(options)},
+            {"configuration", told_configuration(options)},
             {"complete", complete}};
-  json["exit_code"] = exit_code(outcome(summary, complete));
+  json["exit_code"] = exit_code(outcome(summary, complete, examination_options(options)));
   json["summary"] = to_json(summary);
   return json;
 }
@@ -183,10 +183,11 @@ int run_campaign_command(const Options& options) {
     apps::print(verdict_text(summary, examination_options(options), replay_options(options), complete));
   }
   if (!options.report.empty()) {
-    apps::write_file(options.report, html_report(configuration(options), records, summary, replay_options(options)),
+    apps::write_file(options.report,
+                     html_report(told_configuration(options), records, summary, replay_options(options)),
                      apps::Overwrite::replace);
   }
-  return exit_code(outcome(summary, complete));
+  return exit_code(outcome(summary, complete, examination_options(options)));
 }
 
 int run_replay_command(const Options& options) {
@@ -195,22 +196,25 @@ int run_replay_command(const Options& options) {
     throw InputError(fmt::format("--save-model: {} exists, expected a new name", options.save_model));
   }
   const TrialRecord record = run_trial(campaign(options), drawn, *options.replay);
+  const ExaminationOptions asked = examination_options(options);
   if (!options.save_model.empty()) write_model(options.save_model, drawn.model);
   if (!options.report.empty()) {
     const auto rounds = round_series(drawn.model.mdp, make_perturbation(drawn.model), examination_options(options));
-    apps::write_file(options.report, html_report(configuration(options), record, rounds), apps::Overwrite::replace);
+    apps::write_file(options.report, html_report(told_configuration(options), record, rounds),
+                     apps::Overwrite::replace);
   }
   if (options.json) {
     Json json = header(options);
     json["format"] = "maximin-trial";
-    json["exit_code"] = exit_code(outcome(record.found));
-    json["record"] = to_json(record);
+    json["configuration"] = told_configuration(options);
+    json["exit_code"] = exit_code(outcome(record.found, asked));
+    json["record"] = to_json(told(record, asked));
     apps::print(apps::json_text(json));
   } else {
     const std::string title = fmt::format("trial {} of seed {} ({})", record.trial, options.seed, record.family);
-    apps::print(verdict_text(title, drawn.model, record.found, examination_options(options)));
+    apps::print(verdict_text(title, drawn.model, record.found, asked));
   }
-  return exit_code(outcome(record.found));
+  return exit_code(outcome(record.found, asked));
 }
 
 }  // namespace maximin::verify_bound

@@ -37,7 +37,8 @@ template <class Scalar>
 int run(const Model<Scalar>& model, const Options& options) {
   const std::string source = options.model.file.empty() ? options.model.example : options.model.file;
   const TrialRecord record{0, source, examined(model, options)};
-  nlohmann::ordered_json how = configuration(options);
+  const ExaminationOptions asked = examination_options(options);
+  nlohmann::ordered_json how = told_configuration(options);
   how["model"] = source;
   if (!options.report.empty()) {
     apps::write_file(options.report, html_report(how, record, rounds_of(model, options)), apps::Overwrite::replace);
@@ -45,15 +46,15 @@ int run(const Model<Scalar>& model, const Options& options) {
   if (options.json) {
     nlohmann::ordered_json json{
         {"format", "maximin-verdict"}, {"version", 1}, {"maximin", MAXIMIN_VERSION}, {"configuration", how}};
-    json["exit_code"] = exit_code(outcome(record.found));
+    json["exit_code"] = exit_code(outcome(record.found, asked));
     json["notes"] = model.notes;
-    json["record"] = to_json(record);
+    json["record"] = to_json(told(record, asked));
     apps::print(apps::json_text(json));
   } else {
     const std::string title = apps::printable(apps::title(model.name, options.model));
-    apps::print(verdict_text(title, model, record.found, examination_options(options)));
+    apps::print(verdict_text(title, model, record.found, asked));
   }
-  return exit_code(outcome(record.found));
+  return exit_code(outcome(record.found, asked));
 }
 
 }  // namespace

@@ -60,6 +60,10 @@ void declare_checks(CLI::App& program, Options& o) {
       .add_flag_callback(
           "--exact", [&o] { o.arith = "exact"; }, "short for --arith exact")
       ->group(group);
+  program
+      .add_flag("--pedantic", o.pedantic,
+                "what holds in floating point alone is undetermined: it held\nwithin rounding, and was not certified")
+      ->group(group);
   add_tie(program, o.tie)->group(group);
   program
       .add_option("--max-iterations", o.max_iterations,
@@ -213,6 +217,7 @@ ExaminationOptions examination_options(const Options& o) {
   e.max_belief_positions = o.max_positions;
   e.max_period = o.max_period;
   e.exact = is_exact(o);
+  e.pedantic = o.pedantic;
   e.only = claims_named(o.claims);
   return e;
 }
@@ -256,6 +261,12 @@ nlohmann::ordered_json configuration(const Options& o) {
           {"norm", o.model.norm},
           {"dimension", optional(o.dimension)},
           {"successors", optional(o.successors)}};
+}
+
+nlohmann::ordered_json told_configuration(const Options& o) {
+  nlohmann::ordered_json told = configuration(o);
+  if (o.pedantic) told["pedantic"] = true;
+  return told;
 }
 
 std::string replay_options(const Options& o) {

@@ -78,4 +78,11 @@ bool is_exact(const nlohmann::ordered_json& configuration) {
   return configuration.is_object() && configuration.value("arith", nlohmann::ordered_json()) == "exact";
 }
 
+std::string doubt_of(const nlohmann::ordered_json& configuration) {
+  const bool pedantic = configuration.is_object() && configuration.value("pedantic", false);
+  return pedantic && !is_exact(configuration)
+             ? "Undetermined: no violation, but what held held within rounding, not certified."
+             : "";
+}
+
 }  // namespace maximin::report

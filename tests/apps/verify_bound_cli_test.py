@@ -458,6 +458,30 @@ def check_pipe(program):
         return [] if ok and codes == [1, 1, 2, 2] else ["exit codes %s, %r, %r" % (codes, piped.stderr, tampered.stderr)]
 
 
+def check_pedantic(program):
+    """What holds in floating point alone is undetermined; what is proved or violated stays; trials files are the same."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        def claims(out):
+            return {c["verdict"] for c in json.loads(out)["record"]["claims"].values()}
+        for arguments, code, verdicts in (
+                ([], 3, {"undetermined"}), (["--exact"], 0, {"holds"}), (["--reading", "paper"], 1, {"undetermined", "violated"})):
+            given = ["--example", "one-sided", "--pedantic", *arguments]
+            text, listed = run(program, given, cwd=folder), run(program, [*given, "--json"], cwd=folder)
+            if (text.returncode, listed.returncode) != (code, code) or claims(listed.stdout) != verdicts:
+                problems.append("%s: exit codes %d, %d, %s" % (arguments, text.returncode, listed.returncode, claims(listed.stdout)))
+            if (b"held within rounding, not certified" in text.stdout) != (code == 3):
+                problems.append("%s: %r" % (arguments, text.stdout))
+        for name, more, code in (("plain", [], 0), ("pedantic", ["--pedantic"], 3), ("exact", ["--pedantic", "--exact", "--states", "3:5"], 0)):
+            result = campaign(program, folder, "--family", "informative", *more, "--trials-out", name + ".jsonl", "--report", "r.html")
+            doubts = b"held within rounding, not certified"
+            if result.returncode != code or (doubts in result.stdout) != (code == 3) or (doubts in read(folder, "r.html")) != (code == 3):
+                problems.append("%s: exit code %d, %r" % (name, result.returncode, result.stdout))
+        if read(folder, "plain.jsonl") != read(folder, "pedantic.jsonl"):
+            problems.append("--pedantic changes the trials file")
+    return problems
+
+
 CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
           check_replay_hint, check_vacuous, check_assumption, check_terminal, check_report, check_explain, check_sigkill,
           check_sigint]
