@@ -231,7 +231,7 @@ FamilyOptions family_options(const Options& o) {
   f.states = state_range(o.states);
   f.actions = range<Action>(o.actions, "--actions", 1, 1000);
   f.discount = range<double>(o.gamma, "--gamma", 0.0, 0.999999);
-  f.eps = o.model.eps;
+  if (!o.model.eps.empty()) f.eps = apps::nearest_number(o.model.eps);
   f.l_r = o.l_r;
   f.l_p = o.l_p;
   f.dimension = o.dimension;
@@ -241,6 +241,9 @@ FamilyOptions family_options(const Options& o) {
 }
 
 nlohmann::ordered_json configuration(const Options& o) {
+  nlohmann::ordered_json eps = nullptr;  // a fraction as it is written
+  if (!o.model.eps.empty()) eps = apps::nearest_number(o.model.eps);
+  if (o.model.eps.find('/') != std::string::npos) eps = o.model.eps;
   const auto optional = [](const auto& x) { return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json(nullptr); };
   return {{"reading", o.reading},
           {"arith", o.arith},
@@ -255,7 +258,7 @@ nlohmann::ordered_json configuration(const Options& o) {
           {"states", o.states},
           {"actions", o.actions},
           {"gamma", o.gamma},
-          {"eps", optional(o.model.eps)},
+          {"eps", eps},
           {"l_r", optional(o.l_r)},
           {"l_p", optional(o.l_p)},
           {"norm", o.model.norm},
@@ -276,7 +279,7 @@ std::string replay_options(const Options& o) {
   if (!o.states.empty()) add("--states", o.states);
   if (!o.actions.empty()) add("--actions", o.actions);
   if (!o.gamma.empty()) add("--gamma", o.gamma);
-  if (o.model.eps) add("--eps", *o.model.eps);
+  if (!o.model.eps.empty()) add("--eps", o.model.eps);
   if (o.l_r) add("--l-r", *o.l_r);
   if (o.l_p) add("--l-p", *o.l_p);
   if (!o.model.norm.empty()) add("--norm", o.model.norm);

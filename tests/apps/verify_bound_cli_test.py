@@ -57,6 +57,9 @@ REFUSALS = [
     Refusal(["--gamma", "0.5:1"], 2, "--gamma"),
     Refusal(["--gamma", "nan"], 2, "--gamma"),
     Refusal(["--eps", "-1"], 2, "--eps"),
+    *[Refusal(["--eps", eps], 2, "--eps: %s, expected a finite number >= 0 or a fraction such as 1/3" % eps)
+      for eps in ("1/0", "1/3/5", "0.5/2", "nan", "1e999")],
+    Refusal(["--example", "grid", "--discount", "3/3"], 2, "--discount: 3/3, expected a finite number >= 0 and < 1"),
     Refusal(["--resume"], 2, "--trials-out"),
     Refusal(["--save-model", "m.json"], 2, "--replay"),
     *[Refusal(["--replay", "1", *given], 2, "%s: has no effect beside --replay" % given[0])
@@ -479,6 +482,26 @@ def check_pedantic(program):
                 problems.append("%s: exit code %d, %r" % (name, result.returncode, result.stdout))
         if read(folder, "plain.jsonl") != read(folder, "pedantic.jsonl"):
             problems.append("--pedantic changes the trials file")
+    return problems
+
+
+def check_fractions(program):
+    """--eps 1/3 and --discount 1/3 are exact in exact work, and the nearest double in floating point."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "m.json"), "w") as f:
+            f.write(model(points=[[0], ["1/3"]], norm="l1"))
+        exact = ["m.json", "--eps", "1/3", "--discount", "1/3"]
+        certificate = certified(program, folder, *exact)[2]["model"]
+        if (certificate["eps"], certificate["discount"]) != ("1/3", "1/3"):
+            problems.append("the certificate has eps %s, discount %s" % (certificate["eps"], certificate["discount"]))
+        for eps, ball in (("1/3", 2), ("0.3333333333333333", 1)):
+            found = json.loads(run(program, ["m.json", "--eps", eps, "--exact", "--json"], cwd=folder).stdout)["record"]
+            if found["largest_ball"] != ball:
+                problems.append("--eps %s --exact: largest ball %d" % (eps, found["largest_ball"]))
+        rounded = json.loads(run(program, [*exact, "--json"], cwd=folder).stdout)["record"]
+        if (rounded["eps"], rounded["discount"]) != (1 / 3, 1 / 3):
+            problems.append("in floating point: %s" % rounded)
     return problems
 
 
