@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -89,13 +90,26 @@ void check_finished(const Options& options, const std::vector<TrialRecord>& reco
 /// Writes the certificates of an exact campaign, and tells in the end how long they took.
 class CertificateFolder {
  public:
-  explicit CertificateFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit CertificateFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+    if (!folder_.empty()) remove_partial_files();
+  }
 
   void write(long trial, const Certificate& certificate, double seconds) {
     apps::write_file(folder_ / fmt::format("trial-{}.json", trial), certificate_json(certificate),
                      apps::Overwrite::replace);
     const std::lock_guard lock(mutex_);
     times_.emplace_back(seconds, trial);
+  }
+
+  /// Removes what a run that was killed had begun to write.
+  void remove_partial_files() const {
+    std::vector<std::filesystem::path> partial;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("trial-") && name.ends_with(apps::partial_suffix)) partial.push_back(entry.path());
+    }
+    std::error_code gone;
+    for (const auto& file : partial) std::filesystem::remove(file, gone);
   }
 
   void tell() {

@@ -151,7 +151,9 @@ void declare_output(CLI::App& program, Options& o) {
   program
       .add_option(
           "--certificates", o.certificates,
-          "with --exact: write the certificate of each trial K to\nDIR/trial-K.json, and say how long they took")
+          "with --exact: write the certificate of each trial K to\nDIR/trial-K.json, and say how long they took. A run "
+          "that\nis killed may leave trial-K.json.*.partial, which the next\nrun there removes; with --resume only "
+          "trials that are not\nin the file yet are certified")
       ->check(apps::existing_folder())
       ->type_name("DIR")
       ->group(group);

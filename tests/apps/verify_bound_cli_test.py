@@ -505,6 +505,33 @@ def check_fractions(program):
     return problems
 
 
+def check_killed_certificates(program):
+    """A kill leaves whole certificates and partial files, if any, named so; the resumed run removes these, and only these."""
+    with tempfile.TemporaryDirectory() as folder:
+        trials = 150
+        arguments = ["--exact", "--trials", str(trials), "--states", "3:6", "--quiet", "--threads", "2", "--trials-out", "t.jsonl",
+                     "--resume", "--certificates", "c"]
+        os.mkdir(os.path.join(folder, "c"))
+        process = subprocess.Popen([program, *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        deadline = time.time() + 60
+        while len(os.listdir(os.path.join(folder, "c"))) < 20 and time.time() < deadline:
+            time.sleep(0.001)
+        process.kill()
+        process.communicate(timeout=120)
+        left = [f for f in os.listdir(os.path.join(folder, "c")) if not f.endswith(".json")]
+        # Where the kill came between two files, one as it would have left.
+        for name in ("trial-3.json.Ab3dEf.partial", "kept.partial"):
+            with open(os.path.join(folder, "c", name), "w") as f:
+                f.write("{")
+        resumed = run(program, arguments, cwd=folder)
+        problems = ["left %s" % f for f in left if not re.fullmatch(r"trial-\d+\.json\.\w{6}\.partial", f)]
+        files = sorted(os.listdir(os.path.join(folder, "c")))
+        if resumed.returncode not in (0, 3) or files != sorted(["kept.partial"] + ["trial-%d.json" % k for k in range(trials)]):
+            problems.append("exit code %d, files %s, %r" % (resumed.returncode, files, resumed.stderr))
+        checked = run(program, ["check", *(f for f in files if f.endswith(".json"))], cwd=os.path.join(folder, "c"))
+        return problems if checked.returncode in (0, 3) else problems + ["check: %r" % checked.stderr[:300]]
+
+
 CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
           check_replay_hint, check_vacuous, check_assumption, check_terminal, check_report, check_explain, check_sigkill,
           check_sigint]
