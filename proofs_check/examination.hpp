@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <set>
@@ -33,6 +34,8 @@ struct ExaminationOptions {
   bool exact = false;     ///< of a campaign: each model in exact arithmetic (certificate/exact_examination.hpp)
   bool pedantic = false;  ///< of what is told of it: what holds in floating point alone is undetermined
   const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: the examination ends with Interrupted
+
+  std::function<void(const char* stage, long n)> progress = {};  ///< of exact work: as CertifyOptions has it
 
   bool wants(ClaimId id) const { return !only || only->contains(id); }
   /// Whether what holds is told as undetermined, since it only held within rounding.

@@ -12,6 +12,7 @@
 #include <maximin/apps/common/option_checks.hpp>
 #include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/progress.hpp>
 #include <maximin/apps/common/table.hpp>
 #include <maximin/proofs_check/examination.hpp>
 #include <maximin/proofs_check/trial_record.hpp>
@@ -100,7 +101,9 @@ nlohmann::ordered_json summary_json(const CertifyCommand& options, const Certifi
 
 std::optional<Certificate> certify_unless_interrupted(const Model<Rational>& model,
                                                       const GeometryOverrides<Rational>& overrides,
-                                                      const CertifyOptions& options) {
+                                                      CertifyOptions options, bool quiet) {
+  apps::StageProgress progress("certify", quiet);
+  options.progress = [&progress](const char* stage, long n) { progress.stage(stage, n); };
   try {
     return certify(model, overrides, options);
   } catch (const Interrupted&) {
@@ -137,6 +140,7 @@ void declare(CLI::App& command, CertifyCommand& o) {
   budget("--max-period", o.budgets.max_period, 10'000, "longest cycle that is looked for");
   budget("--max-positions", o.budgets.max_positions, 10'000'000, "(state, belief) pairs before F is undetermined");
   command.add_flag("--json", o.json, "one JSON object on standard output, nothing else")->group(group);
+  command.add_flag("--quiet", o.quiet, "no progress line")->group(group);
 }
 
 int run_certify_command(const CertifyCommand& options) {
@@ -152,7 +156,8 @@ int run_certify_command(const CertifyCommand& options) {
     throw InputError(fmt::format("--output: {} exists, expected a new name or --force", options.output));
   }
   const Model<Rational> model = apps::load_exactly(options.model);
-  const auto made = certify_unless_interrupted(model, apps::exact_overrides(options.model), asked);
+  const auto made =
+      certify_unless_interrupted(model, apps::exact_overrides(options.model), asked, options.quiet || options.json);
   if (!made) {
     apps::complain("verify_bound certify", "interrupted; nothing was written");
     return apps::ExitCode::interrupted;

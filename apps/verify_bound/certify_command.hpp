@@ -17,7 +17,7 @@ struct CertifyCommand {
   std::vector<std::string> claims;
   CertifyOptions budgets;
   std::string output;
-  bool force = false, json = false;
+  bool force = false, json = false, quiet = false;
 };
 
 void declare(CLI::App& command, CertifyCommand& options);

@@ -5,6 +5,7 @@
 #include <maximin/apps/common/json_output.hpp>
 #include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/progress.hpp>
 #include <maximin/models/make_perturbation.hpp>
 #include <maximin/models/rationalise.hpp>
 #include <maximin/proofs_check/certificate/exact_examination.hpp>
@@ -21,7 +22,10 @@ Examination examined(const Model<double>& model, const Options& options) {
 }
 
 Examination examined(const Model<Rational>& model, const Options& options) {
-  return examine_exactly(model, apps::exact_overrides(options.model), examination_options(options));
+  apps::StageProgress progress("exact work", options.quiet || options.json);
+  ExaminationOptions asked = examination_options(options);
+  asked.progress = [&progress](const char* stage, long n) { progress.stage(stage, n); };
+  return examine_exactly(model, apps::exact_overrides(options.model), asked);
 }
 
 RoundSeries rounds_of(const Model<double>& model, const Options& options) {

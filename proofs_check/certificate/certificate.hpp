@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -95,6 +96,8 @@ struct CertifyOptions {
   long max_positions = 20'000;     ///< reachable (state, belief) pairs; more make F undetermined
   long max_exact_positions = 150;  ///< more have lower bounds in the place of exact values
   const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: ends with Interrupted
+  /// Told what is begun, e.g. "round", and of which n, or -1.
+  std::function<void(const char* stage, long n)> progress = {};
 
   bool wants(ClaimId id) const { return !only || only->contains(id); }
 };

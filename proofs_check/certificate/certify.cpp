@@ -62,8 +62,10 @@ class Certifier {
   }
 
  private:
-  void poll() const {
+  /// Tells what is begun, unless it is to stop.
+  void begin(const char* stage, long n = -1) const {
     if (options_.stop && *options_.stop) throw Interrupted();
+    if (options_.progress) options_.progress(stage, n);
   }
 
   /// Runs rounds, exactly, until the limit is known or a budget ends them.
@@ -74,12 +76,13 @@ class Certifier {
     long n = 0;
     while (n < options_.max_rounds && !entered && !search.hopeless() &&
            static_cast<long>(msb(q.denominator)) <= options_.max_bits) {
-      poll();
+      begin("round", n);
       Policy composed = round(n++, q);
       entered = search.after_round(std::move(composed), q);
     }
     result_.ties_open = !entered && search.ties_open();
     if (!entered) return claims_.no_limit();
+    begin("limit from round", n);
     result_.limit = certify_limit(mdp_, balls_, entered->orbit, entered->phases, options_.tie);
     result_.limit->gap = claims_.limit(n, q, *entered, *result_.limit);
   }
@@ -116,6 +119,7 @@ class Certifier {
   }
 
   void test_time() {
+    begin("pessimism at test time");
     std::vector<Rational> scratch;
     maximin_policy(optimal_.q, balls_, result_.test_time_policy, scratch, MinAggregator{}, options_.tie);
     result_.test_time_robust = evaluate_against_optimal_attack(mdp_, balls_, result_.test_time_policy).v;
@@ -124,7 +128,7 @@ class Certifier {
 
   void beliefs() {
     if (!options_.wants(ClaimId::f_belief)) return;
-    poll();
+    begin("belief game");
     result_.belief_game = certify_belief_game(mdp_, geometry_, optimal_.q, options_);
     if (!result_.belief_game) return;
     claims_.beliefs(*result_.belief_game, start_values(*result_.belief_game, balls_), result_.l_star.value);
@@ -146,6 +150,7 @@ class Certifier {
 
 Certificate certify(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
                     const CertifyOptions& options) {
+  if (options.progress) options.progress("optimal values", -1);
   return Certifier(model, overrides, options).run();
 }
 

@@ -96,6 +96,7 @@ Examination examine_exactly(const Model<Rational>& model, const GeometryOverride
   exact.max_period = options.max_period;
   exact.max_positions = options.max_belief_positions;
   exact.stop = options.stop;
+  exact.progress = options.progress;
   try {
     const Certificate certificate = certify(model, overrides, exact);
     if (certified) certified(certificate);

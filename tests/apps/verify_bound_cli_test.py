@@ -3,7 +3,9 @@
 import glob
 import json
 import os
+import pty
 import re
+import select
 import signal
 import subprocess
 import tempfile
@@ -530,6 +532,33 @@ def check_killed_certificates(program):
             problems.append("exit code %d, files %s, %r" % (resumed.returncode, files, resumed.stderr))
         checked = run(program, ["check", *(f for f in files if f.endswith(".json"))], cwd=os.path.join(folder, "c"))
         return problems if checked.returncode in (0, 3) else problems + ["check: %r" % checked.stderr[:300]]
+
+
+def check_progress(program):
+    """Exact work that takes long says on a terminal what it does and for how long, and nothing where there is none."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        for command in (["certify", "--example", "gridworld", "-o", "c.json"], ["--example", "gridworld", "--exact"]):
+            for quiet in ([], ["--quiet"]):
+                terminal, stderr = pty.openpty()
+                process = subprocess.Popen([program, *command, *quiet], cwd=folder, stdout=subprocess.DEVNULL, stderr=stderr,
+                                           env={**os.environ, "TERM": "xterm"})
+                os.close(stderr)
+                shown, deadline = b"", time.time() + (3 if quiet else 30)
+                while not re.search(rb"so far.*so far", shown, re.S) and time.time() < deadline:
+                    if select.select([terminal], [], [], 0.1)[0]:
+                        shown += os.read(terminal, 1000)
+                process.kill()
+                process.wait()
+                os.close(terminal)
+                if bool(shown) == bool(quiet) or not quiet and not re.search(rb"(optimal values|round \d+), \d+ s so far", shown):
+                    problems.append("%s: %r" % (command + quiet, shown))
+            process = subprocess.Popen([program, *command], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            time.sleep(2)
+            process.kill()
+            if process.communicate()[1]:
+                problems.append("%s: progress where there is no terminal" % command)
+    return problems
 
 
 CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
