@@ -229,6 +229,22 @@ def check_explain(program):
     return ["%s is not explained" % n for n in names if not re.search(r"^%s: " % n, text, re.M)]
 
 
+def check_theory_page(program):
+    """docs/theory.md names every claim as the program does, and theorems as Coq does; its prose is wrapped."""
+    root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+    with open(os.path.join(root, "docs", "theory.md")) as f:
+        page = f.read()
+    coq = "".join(open(file).read() for file in glob.glob(os.path.join(root, "proofs_check", "coq", "*.v")))
+    names = re.findall(r"^(\S+): ", run(program, ["--explain"]).stdout.decode(), re.M)
+    problems = ["%s is not on the page" % n for n in names if "`%s`" % n not in page]
+    theorems = re.findall(r"`([a-z]\w*_\w+)`", page)
+    problems += ["%s is not in Coq" % t for t in theorems if not re.search(r"\b(Theorem|Lemma|Example) %s\b" % t, coq)
+                 and t not in ("non_contraction", "check_certificate")]
+    lines = page.split("\n")
+    prose = [line for line in lines if not line.startswith(("    ", "|"))]
+    return problems + ["longer than 120: %s" % line for line in prose if len(line) > 120] + ([] if names and theorems else ["no names"])
+
+
 def check_replay(program):
     """A trial by itself gives the record of the campaign; its model, saved, gives the same verdict."""
     with tempfile.TemporaryDirectory() as folder:
@@ -561,9 +577,11 @@ def check_progress(program):
     return problems
 
 
-CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
-          check_replay_hint, check_vacuous, check_assumption, check_terminal, check_report, check_explain, check_sigkill,
-          check_sigint]
+CHECKS = [check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay_hint,
+          check_explain, check_theory_page, check_replay, check_vacuous, check_assumption, check_terminal,
+          check_report, check_sigkill, check_sigint, check_certify, check_tampered, check_exact_campaign,
+          check_falsify, check_falsify_shares, check_huge, check_notes_once, check_exact_legend, check_left_out,
+          check_goes_on, check_pipe, check_pedantic, check_fractions, check_killed_certificates, check_progress]
 
 
 if __name__ == "__main__":
