@@ -60,7 +60,7 @@ struct Found {
   const Goal* found_for = nullptr;         ///< the goal whose search found the model
   std::string file;
 
-  bool hit() const { return model && score > goal->threshold; }
+  bool hit() const { return model && (score > goal->threshold || proved == Verdict::violated); }
 };
 
 ExaminationOptions examination(const FalsifyCommand& o) {
@@ -234,11 +234,13 @@ std::string verdict_sentence(const Found& f) {
   const std::string what = fmt::format("{} ({})", f.goal->name, f.goal->title);
   if (!f.model) return fmt::format("{}: undetermined, no model was decided.\n", what);
   if (!f.hit()) {
-    return fmt::format("{}: not refuted in {} restarts; the highest score is {}, and above {} would refute it.\n", what,
-                       f.restarts, apps::number(f.score), apps::number(f.goal->threshold));
+    return fmt::format("{}: not refuted in {} restart{}; the highest score is {}, and above {} would refute it.\n",
+                       what, f.restarts, f.restarts == 1 ? "" : "s", apps::number(f.score),
+                       apps::number(f.goal->threshold));
   }
-  const char* how = f.proved == Verdict::violated
-                        ? "REFUTED, proved exactly"
+  const char* how = f.proved == Verdict::violated ? "REFUTED, proved exactly"
+                    : f.proved == Verdict::holds
+                        ? "REFUTED in floating point with certified error, but on the decimals of its model it holds"
                         : "REFUTED in floating point with certified error, not proved exactly";
   return fmt::format("{}: {}: score {} on {}.\n", what, how, apps::number(f.score), f.file);
 }
