@@ -140,14 +140,14 @@ std::string place_text(const Check& check, const Model<Scalar>& model) {
 
 template <class Scalar>
 std::string check_row(const Claim& claim, const Check& check, bool informative, const Model<Scalar>& model,
-                      const ExaminationOptions& options) {
+                      const ExaminationOptions& options, bool beyond_doubles) {
   if (check.verdict == Verdict::not_asked) return "";
   if (check.verdict == Verdict::undetermined || check.verdict == Verdict::assumption_fails) {
     return fmt::format("  {:<16} {:<32} {}\n", claim.name, claim.title, to_string(check.verdict));
   }
   const bool doubted = check.verdict == Verdict::holds && options.doubts_what_holds();
   const std::string_view verdict = doubted ? "held" : to_string(check.verdict);
-  const char* worth = !claim.is_bound ? "" : informative ? "informative" : "vacuous";
+  const char* worth = !claim.is_bound || beyond_doubles ? "" : informative ? "informative" : "vacuous";
   return fmt::format("  {:<16} {:<32} {:<9} {:>13.6g} <= {:<13.6g} {:>8} {:<12} {}\n", claim.name, claim.title, verdict,
                      check.left, check.right, ratio(check.tightness()), worth, place_text(check, model));
 }
@@ -232,10 +232,10 @@ std::string verdict_text(std::string_view title, const Model<Scalar>& model, con
   long vacuous = 0, bounds_checked = 0;
   for (const Claim& c : claims()) {
     const Check& check = e.check(c.id);
-    text += check_row(c, check, e.informative(c.id), model, options);
+    text += check_row(c, check, e.informative(c.id), model, options, !std::isfinite(e.trivial));
     const bool checked = check.verdict == Verdict::holds || check.verdict == Verdict::violated;
     bounds_checked += c.is_bound && checked;
-    vacuous += c.is_bound && checked && !e.informative(c.id);
+    vacuous += c.is_bound && checked && std::isfinite(e.trivial) && !e.informative(c.id);
   }
   text += sides_legend(e, options);
   switch (outcome(e, options)) {

@@ -1,5 +1,7 @@
 #include "model_command.hpp"
 
+#include <optional>
+
 #include <fmt/format.h>
 
 #include <maximin/apps/common/json_output.hpp>
@@ -40,13 +42,13 @@ RoundSeries rounds_of(const Model<Rational>& model, const Options& options) {
 template <class Scalar>
 int run(const Model<Scalar>& model, const Options& options) {
   const std::string source = options.model.file.empty() ? options.model.example : options.model.file;
+  std::optional<RoundSeries> rounds;  // first, since they are drawn in floating point, which may not hold the model
+  if (!options.report.empty()) rounds = rounds_of(model, options);
   const TrialRecord record{0, source, examined(model, options)};
   const ExaminationOptions asked = examination_options(options);
   nlohmann::ordered_json how = told_configuration(options);
   how["model"] = source;
-  if (!options.report.empty()) {
-    apps::write_file(options.report, html_report(how, record, rounds_of(model, options)), apps::Overwrite::replace);
-  }
+  if (rounds) apps::write_file(options.report, html_report(how, record, *rounds), apps::Overwrite::replace);
   if (options.json) {
     nlohmann::ordered_json json{
         {"format", "maximin-verdict"}, {"version", 1}, {"maximin", MAXIMIN_VERSION}, {"configuration", how}};

@@ -1,6 +1,7 @@
 #include <gmpxx.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -48,11 +49,13 @@ Report check_file(const std::string& name) {
   return maximin::checker::check(file);
 }
 
-/// A side for a table: exact where that is short, else six digits.
+/// A side for a table: exact where that is short, else six digits, or its first ones where no double is as large.
 std::string short_text(const std::string& number) {
   if (number.size() <= 12) return number;
   char text[32];
-  std::snprintf(text, sizeof text, "~%.6g", mpq_class(number).get_d());
+  const double near = mpq_class(number).get_d();
+  if (!std::isfinite(near)) return number.substr(0, 7) + "... (" + std::to_string(number.size()) + " characters)";
+  std::snprintf(text, sizeof text, "~%.6g", near);
   return text;
 }
 
