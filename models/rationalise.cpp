@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,22 +13,22 @@
 namespace maximin {
 namespace {
 
-Model<Rational> with_mdp(FiniteMdp<Rational> mdp, const Model<double>& model) {
-  Model<Rational> result{std::move(mdp)};
+/// The model with another MDP and all its other numbers converted.
+template <class To, class From, class Convert>
+Model<To> converted(FiniteMdp<To> mdp, const Model<From>& model, Convert convert) {
+  Model<To> result{std::move(mdp)};
   result.name = model.name;
   result.state_names = model.state_names;
   result.action_names = model.action_names;
   result.notes = model.notes;
-  Rational total(0);
-  for (const double p : model.start) total += result.start.emplace_back(decimal(p));
-  for (Rational& p : result.start) p /= total;
+  for (const From& p : model.start) result.start.push_back(convert(p));
   auto& g = result.geometry;
-  g.kind = static_cast<Geometry<Rational>::Kind>(model.geometry.kind);
-  g.points = model.geometry.points.unaryExpr([](double x) { return decimal(x); });
+  g.kind = static_cast<typename Geometry<To>::Kind>(model.geometry.kind);
+  g.points = model.geometry.points.unaryExpr(convert);
   g.norm = model.geometry.norm;
-  g.distances = model.geometry.distances.unaryExpr([](double x) { return decimal(x); });
+  g.distances = model.geometry.distances.unaryExpr(convert);
   g.neighbourhoods = model.geometry.neighbourhoods;
-  if (model.geometry.eps) g.eps = decimal(*model.geometry.eps);
+  if (model.geometry.eps) g.eps = convert(*model.geometry.eps);
   return result;
 }
 
@@ -76,7 +77,23 @@ Model<Rational> rationalise(const Model<double>& model) {
       add_row(builder, s, a, row);
     }
   }
-  return with_mdp(std::move(builder).build(), model);
+  auto exact = converted<Rational>(std::move(builder).build(), model, [](double x) { return decimal(x); });
+  const Rational total = std::accumulate(exact.start.begin(), exact.start.end(), Rational(0));
+  for (Rational& p : exact.start) p /= total;
+  return exact;
+}
+
+Model<double> rounded(const Model<Rational>& model) {
+  const auto near = [](const Rational& x) { return static_cast<double>(x); };
+  const FiniteMdp<Rational>& mdp = model.mdp;
+  FiniteMdpBuilder<double> builder(mdp.states(), mdp.actions(), near(mdp.discount()));
+  for (State s = 0; s < mdp.states(); ++s) {
+    for (Action a = 0; a < mdp.actions(); ++a) {
+      builder.reward(s, a, near(mdp.reward(s, a)));
+      for (const auto& next : mdp.successors(s, a)) builder.transition(s, a, next.target, near(next.probability));
+    }
+  }
+  return converted<double>(std::move(builder).build(), model, near);
 }
 
 Model<double> coarsen(Model<double> model) {

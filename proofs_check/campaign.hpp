@@ -8,7 +8,6 @@
 #include <utility>
 
 #include <maximin/models/model.hpp>
-#include <maximin/proofs_check/certificate/certificate.hpp>
 #include <maximin/proofs_check/examination.hpp>
 #include <maximin/proofs_check/trial_record.hpp>
 #include <maximin/theory/random.hpp>
@@ -35,7 +34,7 @@ struct Campaign {
   long first = 0;  ///< trials before it are known already (a resumed run)
   int threads = 1;
   ExaminationOptions examination = {};
-  std::function<void(long trial, const Certificate& certificate, double seconds)> certified = {};
+  std::function<void(long trial, const std::string& json, double seconds)> certified = {};
 };
 
 /// Takes the records in order of the trials, from one thread at a time. May throw; the campaign then ends, and the sink

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <set>
@@ -30,10 +31,16 @@ struct ExaminationOptions {
   std::optional<std::set<ClaimId>> only = {};  ///< absent: all
   long max_period = 64;                        ///< the longest cycle of policy pairs that is looked for
   TieBreak tie = TieBreak::lowest_index;
-  bool exact = false;  ///< of a campaign: each model in exact arithmetic (certificate/exact_examination.hpp)
+  bool exact = false;      ///< in exact arithmetic (certificate/exact_examination.hpp)
+  bool by_bounds = false;  ///< and then with bounds in the place of exact values
+  bool pedantic = false;   ///< of what is told of it: what holds in floating point alone is undetermined
   const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: the examination ends with Interrupted
 
+  std::function<void(const char* stage, long n)> progress = {};  ///< of exact work: as CertifyOptions has it
+
   bool wants(ClaimId id) const { return !only || only->contains(id); }
+  /// Whether what holds is told as undetermined, since it only held within rounding.
+  bool doubts_what_holds() const { return pedantic && !exact; }
 };
 
 /// Everything that was found out about one model.
@@ -49,6 +56,7 @@ struct Examination {
   Fate fate = Fate::undetermined;
   long period = 0;
   long periodic_from = -1;  ///< the round from which the pairs repeat, when the fate is known
+  long enclosed_from = -1;  ///< the round from which it is known within bounds what Q_n does, where the fate is not
   long iterations = 0;
   long pairs = 0;                         ///< distinct policy pairs met
   State largest_ball = 0;                 ///< states in it

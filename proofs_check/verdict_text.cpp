@@ -6,8 +6,13 @@
 
 #include <fmt/ranges.h>
 
+#include <maximin/theory/rational.hpp>
+
 namespace maximin {
 namespace {
+
+constexpr const char* only_within_rounding =
+    "held within rounding, not certified (--pedantic); --exact proves what holds.";
 
 std::string percent(long part, long whole) {
   if (whole == 0) return "-";
@@ -45,9 +50,10 @@ std::string periods(const CampaignSummary& s) {
   return text.empty() ? text : text + ")";
 }
 
-std::string conclusion(const CampaignSummary& s, std::string_view draw, bool complete, bool exact) {
+std::string conclusion(const CampaignSummary& s, std::string_view draw, bool complete,
+                       const ExaminationOptions& options) {
   const char* interrupted = complete ? "" : " The run was interrupted; --resume completes it.";
-  switch (outcome(s, complete)) {
+  switch (outcome(s, complete, options)) {
     case Outcome::violated: {
       std::string lines;
       for (const Claim& c : claims()) {
@@ -71,6 +77,10 @@ std::string conclusion(const CampaignSummary& s, std::string_view draw, bool com
             "campaign verifies nothing. Ask for smaller eps, gamma or l_p, or --family informative.{}\n",
             interrupted);
       }
+      if (complete && outcome(s, complete) == Outcome::holds) {
+        return fmt::format("UNDETERMINED: no violation in {}, but what held there {}\n", counted(s.trials, "model"),
+                           only_within_rounding);
+      }
       return fmt::format("UNDETERMINED: {} and no violation.{}\n", counted(s.trials, "model"), interrupted);
     case Outcome::assumption_fails:
       return fmt::format("ASSUMPTION FAILS on {} of {}; no violation on the others.\n", s.assumption_failures,
@@ -83,12 +93,13 @@ std::string conclusion(const CampaignSummary& s, std::string_view draw, bool com
           s.undetermined == 0
               ? ""
               : fmt::format("Some claim is undetermined on {} of them: a budget ran out.\n", s.undetermined),
-          exact ? "Proved for each of them in exact arithmetic; of other models nothing is proved."
-                : "Seen in floating point, with certified numerical error; not a proof.");
+          options.exact ? "Proved for each of them in exact arithmetic; of other models nothing is proved."
+                        : "Seen in floating point, with certified numerical error; not a proof.");
   }
 }
 
-std::string witness(const char* name, const LipschitzConstant<double>& c, const Model<double>& model) {
+template <class Scalar>
+std::string witness(const char* name, const LipschitzConstant<double>& c, const Model<Scalar>& model) {
   const std::string pair = fmt::format("states {} and {}", model.state_name(c.s1), model.state_name(c.s2));
   if (c.infinite) return fmt::format("  {:<14} infinite: {} at distance 0 differ\n", name, pair);
   if (c.s1 == c.s2) return fmt::format("  {:<14} {:.6g}\n", name, c.value);
@@ -109,11 +120,13 @@ std::string fate_text(const Examination& e, bool exact) {
     return fmt::format("the policy pairs cycle with period {} from n = {}, seen at n = {}", e.period, e.periodic_from,
                        e.iterations);
   }
+  if (e.enclosed_from >= 0) return fmt::format("enclosed from n = {} on, for ever, by bounds", e.enclosed_from);
   return fmt::format("neither settled nor cycled in {} rounds (--max-iterations, --max-period)", e.iterations);
 }
 
 /// "at n = 4, states 1 and 2, action 0": where the tightest instance of a claim stands.
-std::string place_text(const Check& check, const Model<double>& model) {
+template <class Scalar>
+std::string place_text(const Check& check, const Model<Scalar>& model) {
   std::vector<std::string> parts;
   const Place& at = check.place;
   if (check.n >= 0) parts.push_back(fmt::format("n = {}", check.n));
@@ -126,29 +139,56 @@ std::string place_text(const Check& check, const Model<double>& model) {
   return parts.empty() ? "" : fmt::format("at {}", fmt::join(parts, ", "));
 }
 
-std::string check_row(const Claim& claim, const Check& check, bool informative, const Model<double>& model) {
+template <class Scalar>
+std::string check_row(const Claim& claim, const Check& check, bool informative, const Model<Scalar>& model,
+                      const ExaminationOptions& options, bool beyond_doubles) {
   if (check.verdict == Verdict::not_asked) return "";
   if (check.verdict == Verdict::undetermined || check.verdict == Verdict::assumption_fails) {
     return fmt::format("  {:<16} {:<32} {}\n", claim.name, claim.title, to_string(check.verdict));
   }
-  const char* worth = !claim.is_bound ? "" : informative ? "informative" : "vacuous";
-  return fmt::format("  {:<16} {:<32} {:<9} {:>13.6g} <= {:<13.6g} {:>8} {:<12} {}\n", claim.name, claim.title,
-                     to_string(check.verdict), check.left, check.right, ratio(check.tightness()), worth,
-                     place_text(check, model));
+  const bool doubted = check.verdict == Verdict::holds && options.doubts_what_holds();
+  const std::string_view verdict = doubted ? "held" : to_string(check.verdict);
+  const char* worth = !claim.is_bound || beyond_doubles ? "" : informative ? "informative" : "vacuous";
+  return fmt::format("  {:<16} {:<32} {:<9} {:>13.6g} <= {:<13.6g} {:>8} {:<12} {}\n", claim.name, claim.title, verdict,
+                     check.left, check.right, ratio(check.tightness()), worth, place_text(check, model));
+}
+
+/// What the table of claims shows of an exact run, which is not what one in floating point shows.
+std::string sides_legend(const Examination& e, const ExaminationOptions& options) {
+  if (!options.exact) return "";
+  std::string text =
+      "\n  left <= right and left/right are of the instance with the least right - left, not with the largest "
+      "left/right\n";
+  bool enclosed = false, huge = false;
+  if (options.by_bounds) text += "  left is never too small, right never too large: what holds is proved\n";
+  for (const ClaimId id : {ClaimId::lemma_1_iterates, ClaimId::lemma_2}) {
+    enclosed =
+        enclosed || (!options.by_bounds && e.check(id).verdict == Verdict::holds && e.check(id).n >= e.iterations);
+  }
+  for (const Check& check : e.checks) huge = huge || !std::isfinite(check.left) || !std::isfinite(check.right);
+  if (enclosed) {
+    text += fmt::format(
+        "  lemma-1-iterates and lemma-2 from n = {} on: left is an upper bound for all rounds of one phase\n",
+        e.iterations);
+  }
+  if (huge) text += "  inf: beyond floating point; verify_bound certify writes the exact numbers\n";
+  return text;
 }
 
 }  // namespace
 
-Outcome outcome(const CampaignSummary& s, bool complete) {
+Outcome outcome(const CampaignSummary& s, bool complete, const ExaminationOptions& options) {
   if (s.violations > 0) return Outcome::violated;
   if (!complete || s.vacuous() || s.some_claim_never_decided()) return Outcome::undetermined;
-  return s.assumption_failures > 0 ? Outcome::assumption_fails : Outcome::holds;
+  if (s.assumption_failures > 0) return Outcome::assumption_fails;
+  return options.doubts_what_holds() ? Outcome::undetermined : Outcome::holds;
 }
 
-Outcome outcome(const Examination& e) {
+Outcome outcome(const Examination& e, const ExaminationOptions& options) {
   if (e.any(Verdict::violated)) return Outcome::violated;
   if (e.any(Verdict::assumption_fails)) return Outcome::assumption_fails;
-  return e.any(Verdict::undetermined) ? Outcome::undetermined : Outcome::holds;
+  const bool doubted = options.doubts_what_holds() && e.any(Verdict::holds);
+  return doubted || e.any(Verdict::undetermined) ? Outcome::undetermined : Outcome::holds;
 }
 
 std::string verdict_text(const CampaignSummary& s, const ExaminationOptions& options, std::string_view draw,
@@ -160,9 +200,11 @@ std::string verdict_text(const CampaignSummary& s, const ExaminationOptions& opt
     const ClaimSummary& cs = s.claims[static_cast<std::size_t>(c.id)];
     if (cs.checked() + cs.undetermined + cs.assumption_fails > 0) text += claim_row(c, cs);
   }
-  text +=
-      "\n  informative: the bound is below gamma span(R)/(1-gamma); median, p99 and max are of (left - slack) / "
-      "right\n  What each claim states: verify_bound --explain\n\n";
+  text += fmt::format(
+      "\n  informative: the bound is below gamma span(R)/(1-gamma); median, p99 and max are of {}\n  What each claim "
+      "states: verify_bound --explain\n\n",
+      options.exact ? "left / right where right - left\n  is least on a model, not of the largest left / right"
+                    : "(left - slack) / right");
   text += fmt::format("Q_n settled on {}, cycled on {}{}, neither on {}\n", s.settled, s.cycles, periods(s),
                       s.fate_undetermined);
   text += fmt::format(
@@ -170,10 +212,11 @@ std::string verdict_text(const CampaignSummary& s, const ExaminationOptions& opt
       s.balls_of_several, s.attack_changes_action, s.pessimism_changes_action);
   text += fmt::format("At least one bound informative on {} ({})\n\n", s.any_informative,
                       percent(s.any_informative, s.trials));
-  return text + conclusion(s, draw, complete, options.exact);
+  return text + conclusion(s, draw, complete, options);
 }
 
-std::string verdict_text(std::string_view title, const Model<double>& model, const Examination& e,
+template <class Scalar>
+std::string verdict_text(std::string_view title, const Model<Scalar>& model, const Examination& e,
                          const ExaminationOptions& options) {
   std::string text = fmt::format("{}: {}, {}, gamma {:g}, eps {:g}, largest ball {}\nreading {}\n\n", title,
                                  counted(e.states, "state"), counted(e.actions, "action"), e.discount, e.eps,
@@ -192,15 +235,19 @@ std::string verdict_text(std::string_view title, const Model<double>& model, con
   long vacuous = 0, bounds_checked = 0;
   for (const Claim& c : claims()) {
     const Check& check = e.check(c.id);
-    text += check_row(c, check, e.informative(c.id), model);
+    text += check_row(c, check, e.informative(c.id), model, options, !std::isfinite(e.trivial));
     const bool checked = check.verdict == Verdict::holds || check.verdict == Verdict::violated;
     bounds_checked += c.is_bound && checked;
-    vacuous += c.is_bound && checked && !e.informative(c.id);
+    vacuous += c.is_bound && checked && std::isfinite(e.trivial) && !e.informative(c.id);
   }
-  switch (outcome(e)) {
+  text += sides_legend(e, options);
+  switch (outcome(e, options)) {
     case Outcome::violated:
       return text + "\nVIOLATED: a claim above fails on this model.\n";
     case Outcome::undetermined:
+      if (!e.any(Verdict::undetermined)) {
+        return text + fmt::format("\nUNDETERMINED: what held above {}\n", only_within_rounding);
+      }
       return text +
              (options.exact
                   ? "\nUNDETERMINED: what holds above is proved, a claim is open; verify_bound certify says more.\n"
@@ -212,6 +259,11 @@ std::string verdict_text(std::string_view title, const Model<double>& model, con
                                 vacuous == bounds_checked ? "; but every bound is vacuous here." : ".");
   }
 }
+
+template std::string verdict_text(std::string_view, const Model<double>&, const Examination&,
+                                  const ExaminationOptions&);
+template std::string verdict_text(std::string_view, const Model<Rational>&, const Examination&,
+                                  const ExaminationOptions&);
 
 std::string claims_text() {
   std::string text;

@@ -27,7 +27,7 @@ CLI::Option* add_words(CLI::App& app, const std::string& name, std::string& valu
 
 void declare_reading(CLI::App& app, ModelOptions& options) {
   app.add_option("--discount", options.discount, "gamma, instead of the model's")
-      ->check(real_number({.low = 0, .high = 1, .below = true}))
+      ->check(number_or_fraction({.low = 0, .high = 1, .below = true}))
       ->type_name("GAMMA")
       ->group(model_group);
   app.add_option("--reward-model", options.reward_model, "which reward model to read, if the file has several")
@@ -44,8 +44,8 @@ void declare_geometry(CLI::App& app, ModelOptions& options) {
       ->group(geometry_group);
   add_words(app, "--norm", options.norm, {"l1", "l2", "linf"}, "norm of the points: l1, l2 or linf")
       ->group(geometry_group);
-  app.add_option("--eps", options.eps, "radius of the balls, in units of the metric")
-      ->check(real_number({.low = 0}))
+  app.add_option("--eps", options.eps, "radius of the balls, in units of the metric, e.g. 0.1 or 1/3")
+      ->check(number_or_fraction({.low = 0}))
       ->type_name("EPS")
       ->group(geometry_group);
 }
@@ -67,7 +67,7 @@ std::string wrapped(const std::vector<std::string>& words) {
 template <class Scalar>
 Model<Scalar> load_file(const ModelOptions& options) {
   ReadOptions reading;
-  reading.discount = options.discount;
+  if (!options.discount.empty()) reading.discount = nearest_number(options.discount);
   reading.reward_model = options.reward_model;
   if (options.intervals == "nominal") reading.intervals = IntervalRows::nominal;
   return load_model<Scalar>(options.file, reading);
@@ -84,7 +84,7 @@ Model<double> load_example(const ModelOptions& options) {
                                  fmt::join(names, ", "), near.empty() ? "" : fmt::format("; did you mean {}?", near)));
   }
   Model<double> model = builtin_model(options.example);
-  if (options.discount) model.mdp = with_discount(model.mdp, *options.discount);
+  if (!options.discount.empty()) model.mdp = with_discount(model.mdp, nearest_number(options.discount));
   return model;
 }
 
@@ -117,6 +117,15 @@ Model<Scalar> with_remarks(Model<Scalar> model) {
   return model;
 }
 
+template <class Scalar>
+void remark_on_default_metric(const Model<Scalar>& model, const ModelOptions& options) {
+  if (model.geometry.kind != Geometry<Scalar>::Kind::none || !options.metric.empty()) return;
+  remark(
+      fmt::format("the model says nothing of distances: hops in the transition graph are taken{}; --metric and --eps "
+                  "choose otherwise",
+                  options.eps.empty() ? ", and eps = 1" : ""));
+}
+
 }  // namespace
 
 Model<double> load(const ModelOptions& options) {
@@ -126,7 +135,11 @@ Model<double> load(const ModelOptions& options) {
 
 Model<Rational> load_exactly(const ModelOptions& options) {
   refuse_none_and_both(options);
-  return with_remarks(options.example.empty() ? load_file<Rational>(options) : rationalise(load_example(options)));
+  auto model =
+      with_remarks(options.example.empty() ? load_file<Rational>(options) : rationalise(load_example(options)));
+  if (!options.discount.empty()) model.mdp = with_discount(model.mdp, exact_number(options.discount));
+  remark_on_default_metric(model, options);
+  return model;
 }
 
 std::string title(const std::string& name, const ModelOptions& options) {
@@ -141,7 +154,7 @@ GeometryOverrides<double> geometry_overrides(const ModelOptions& options) {
   if (options.metric == "hops") overrides.kind = Kind::hops;
   if (options.metric == "discrete") overrides.kind = Kind::discrete;
   if (!options.norm.empty()) overrides.norm = norm_named(options.norm);
-  overrides.eps = options.eps;
+  if (!options.eps.empty()) overrides.eps = nearest_number(options.eps);
   return overrides;
 }
 
@@ -150,17 +163,12 @@ GeometryOverrides<Rational> exact_overrides(const ModelOptions& options) {
   GeometryOverrides<Rational> overrides;
   if (asked.kind) overrides.kind = static_cast<Geometry<Rational>::Kind>(*asked.kind);
   overrides.norm = asked.norm;
-  if (asked.eps) overrides.eps = decimal(*asked.eps);
+  if (!options.eps.empty()) overrides.eps = exact_number(options.eps);
   return overrides;
 }
 
 Perturbation<double> make_perturbation(const Model<double>& model, const ModelOptions& options) {
-  if (model.geometry.kind == Kind::none && options.metric.empty()) {
-    remark(
-        fmt::format("the model says nothing of distances: hops in the transition graph are taken{}; --metric and "
-                    "--eps choose otherwise",
-                    options.eps ? "" : ", and eps = 1"));
-  }
+  remark_on_default_metric(model, options);
   return maximin::make_perturbation(model, geometry_overrides(options));
 }
 
@@ -171,8 +179,9 @@ Norm norm_named(const std::string& name) {
   throw InputError("norm: " + name + ", expected l1, l2 or linf");
 }
 
-FiniteMdp<double> with_discount(const FiniteMdp<double>& mdp, double discount) {
-  FiniteMdpBuilder<double> builder(mdp.states(), mdp.actions(), discount);
+template <class Scalar>
+FiniteMdp<Scalar> with_discount(const FiniteMdp<Scalar>& mdp, const Scalar& discount) {
+  FiniteMdpBuilder<Scalar> builder(mdp.states(), mdp.actions(), discount);
   for (State s = 0; s < mdp.states(); ++s) {
     for (Action a = 0; a < mdp.actions(); ++a) {
       builder.reward(s, a, mdp.reward(s, a));
@@ -181,5 +190,8 @@ FiniteMdp<double> with_discount(const FiniteMdp<double>& mdp, double discount) {
   }
   return std::move(builder).build();
 }
+
+template FiniteMdp<double> with_discount(const FiniteMdp<double>&, const double&);
+template FiniteMdp<Rational> with_discount(const FiniteMdp<Rational>&, const Rational&);
 
 }  // namespace maximin::apps

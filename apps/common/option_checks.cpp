@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include <maximin/apps/common/program.hpp>
+#include <maximin/models/files/internal/number.hpp>
 #include <maximin/models/nearest_name.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -37,6 +38,19 @@ std::string leading_zero(const std::string& text) {
              : "";
 }
 
+bool contains(const RealRange& range, double x) {
+  return std::isfinite(x) && (range.above ? x > range.low : x >= range.low) &&
+         (range.below ? x < range.high : x <= range.high);
+}
+
+template <class Scalar>
+Scalar number_of(const std::string& text) {
+  Scalar x(0);
+  const internal::NumberFault fault = internal::parse_number(text, x);
+  if (fault != internal::NumberFault::none) throw InputError(internal::describe_fault(fault, "number", text));
+  return x;
+}
+
 std::string describe(const RealRange& range) {
   std::string text;
   if (std::isfinite(range.low)) text = fmt::format(" {} {}", range.above ? ">" : ">=", range.low);
@@ -51,11 +65,30 @@ std::string describe(const RealRange& range) {
 CLI::Validator real_number(const RealRange& range) {
   const auto check = [range](std::string& text) -> std::string {
     double x = 0;
-    const bool inside = parse(text, x) && std::isfinite(x) && (range.above ? x > range.low : x >= range.low) &&
-                        (range.below ? x < range.high : x <= range.high);
-    return inside ? std::string() : fmt::format("{}, expected a finite number{}", text, describe(range));
+    if (parse(text, x) && contains(range, x)) return {};
+    return fmt::format("{}, expected a finite number{}", text, describe(range));
   };
   return CLI::Validator(check, "");
+}
+
+CLI::Validator number_or_fraction(const RealRange& range) {
+  const auto check = [range](std::string& text) -> std::string {
+    double x = 0;
+    Rational exact(0);
+    const bool readable = internal::parse_number(text, x) == internal::NumberFault::none &&
+                          internal::parse_number(text, exact) == internal::NumberFault::none;
+    if (readable && contains(range, x)) return {};
+    return fmt::format("{}, expected a finite number{} or a fraction such as 1/3", text, describe(range));
+  };
+  return CLI::Validator(check, "");
+}
+
+double nearest_number(const std::string& text) {
+  return number_of<double>(text);
+}
+
+Rational exact_number(const std::string& text) {
+  return number_of<Rational>(text);
 }
 
 CLI::Validator whole_number(long low, long high) {

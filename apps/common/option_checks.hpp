@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <maximin/theory/rational.hpp>
+
 /// Checks of option values, so that every program refuses a bad number in the same words: "--eps: -1, expected a finite
 /// number >= 0".
 namespace maximin::apps {
@@ -19,6 +21,16 @@ struct RealRange {
 
 /// Accepts a decimal number in the range.
 CLI::Validator real_number(const RealRange& range = {});
+
+/// Accepts a decimal or a fraction such as 1/3 whose nearest double is in the range. Its value must be a string, which
+/// `nearest_number` and `exact_number` read.
+CLI::Validator number_or_fraction(const RealRange& range = {});
+
+/// The double nearest to such a number. Both throw InputError on any other text.
+double nearest_number(const std::string& text);
+
+/// Such a number itself.
+Rational exact_number(const std::string& text);
 
 /// Accepts a whole number from `low` to `high`, in decimal digits without leading zeros, which would be read as octal.
 CLI::Validator whole_number(long low, long high = std::numeric_limits<long>::max());

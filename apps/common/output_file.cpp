@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 /// The temporary file; removed unless it was given its final name.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& target) : name_(target.string() + ".XXXXXX") {
-    fd_ = mkstemp(name_.data());
+  explicit TemporaryFile(const fs::path& target) : name_(target.string() + ".XXXXXX" + partial_suffix) {
+    fd_ = mkstemps(name_.data(), static_cast<int>(std::strlen(partial_suffix)));
     if (fd_ < 0) fail(target, "a file name in a folder that can be written");
   }
   TemporaryFile(const TemporaryFile&) = delete;

@@ -8,8 +8,11 @@ namespace maximin::apps {
 /// What to do when the file exists.
 enum class Overwrite { refuse, replace };
 
-/// Writes a whole file or none: to a temporary file beside it, which then takes its name. Throws InputError when it
-/// cannot be written, or exists and may not be replaced.
+/// How the name of a file ends that is being written, or was when the program was killed.
+inline constexpr const char* partial_suffix = ".partial";
+
+/// Writes a whole file or none: to a file NAME.XXXXXX.partial beside it, which then takes its name. Throws InputError
+/// when it cannot be written, or exists and may not be replaced.
 void write_file(const std::filesystem::path& path, std::string_view content, Overwrite overwrite);
 
 }  // namespace maximin::apps

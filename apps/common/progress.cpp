@@ -53,4 +53,35 @@ void Progress::draw(const std::string& note, Clock::time_point now) {
   std::fflush(stderr);
 }
 
+StageProgress::StageProgress(std::string title, bool quiet)
+    : title_(std::move(title)), stage_("begins"), start_(std::chrono::steady_clock::now()) {
+  if (quiet || !stderr_is_terminal()) return;
+  drawing_.emplace([this](const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    while (!wake_.wait_for(lock, stop, std::chrono::milliseconds(500), [&] { return stop.stop_requested(); })) draw();
+  });
+}
+
+StageProgress::~StageProgress() {
+  if (!drawing_) return;
+  drawing_.reset();  // joined
+  fmt::print(stderr, "\r\033[K");
+}
+
+void StageProgress::stage(std::string text) {
+  if (!drawing_) return;
+  const std::lock_guard lock(mutex_);
+  stage_ = std::move(text);
+}
+
+void StageProgress::stage(const char* text, long n) {
+  if (drawing_) stage(n < 0 ? std::string(text) : fmt::format("{} {}", text, n));
+}
+
+void StageProgress::draw() {
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  fmt::print(stderr, "\r\033[K{}: {}, {} so far", title_, stage_, seconds(elapsed));
+  std::fflush(stderr);
+}
+
 }  // namespace maximin::apps

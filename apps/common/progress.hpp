@@ -1,7 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <thread>
 
 namespace maximin::apps {
 
@@ -32,6 +36,36 @@ class Progress {
   bool visible_;
   Clock::time_point start_;
   Clock::time_point drawn_;
+};
+
+/// What a long piece of work is doing, and for how long, on one line of standard error, drawn only when that is a
+/// terminal. A thread of its own redraws it, so that the time goes on while the work is silent.
+///
+///     StageProgress progress("certify");
+///     progress.stage("round 17");      // certify: round 17, 42 s so far
+class StageProgress {
+ public:
+  /// Nothing is ever drawn when `quiet`.
+  explicit StageProgress(std::string title, bool quiet = false);
+  /// Clears the line.
+  ~StageProgress();
+  StageProgress(const StageProgress&) = delete;
+  StageProgress& operator=(const StageProgress&) = delete;
+
+  /// This is begun.
+  void stage(std::string text);
+  /// The same in the form in which exact work tells it: n < 0 is none.
+  void stage(const char* text, long n);
+
+ private:
+  void draw();
+
+  std::string title_;
+  std::string stage_;
+  std::chrono::steady_clock::time_point start_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::optional<std::jthread> drawing_;  ///< none where nothing is drawn
 };
 
 }  // namespace maximin::apps

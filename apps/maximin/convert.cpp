@@ -20,7 +20,7 @@ struct ConvertOptions {
 
 /// The geometry that the command line asks for becomes the model's own.
 void apply_geometry(const ModelOptions& options, Model<double>& model) {
-  if (options.metric.empty() && options.norm.empty() && !options.eps) return;
+  if (options.metric.empty() && options.norm.empty() && options.eps.empty()) return;
   model.geometry = resolve_geometry(model, geometry_overrides(options));
 }
 

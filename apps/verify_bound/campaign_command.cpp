@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
-#include <thread>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -25,6 +25,7 @@
 #include <maximin/proofs_check/trial_file.hpp>
 
 #include "outcome.hpp"
+#include "shared_options.hpp"
 #include "violation.hpp"
 
 namespace maximin::verify_bound {
@@ -47,8 +48,7 @@ Campaign campaign(const Options& options) {
   Campaign c;
   c.seed = options.seed;
   c.trials = options.trials;
-  c.threads =
-      options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  c.threads = threads_for(options.threads);
   c.examination = examination_options(options);
   return c;
 }
@@ -90,13 +90,25 @@ void check_finished(const Options& options, const std::vector<TrialRecord>& reco
 /// Writes the certificates of an exact campaign, and tells in the end how long they took.
 class CertificateFolder {
  public:
-  explicit CertificateFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit CertificateFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+    if (!folder_.empty()) remove_partial_files();
+  }
 
-  void write(long trial, const Certificate& certificate, double seconds) {
-    apps::write_file(folder_ / fmt::format("trial-{}.json", trial), certificate_json(certificate),
-                     apps::Overwrite::replace);
+  void write(long trial, const std::string& json, double seconds) {
+    apps::write_file(folder_ / fmt::format("trial-{}.json", trial), json, apps::Overwrite::replace);
     const std::lock_guard lock(mutex_);
     times_.emplace_back(seconds, trial);
+  }
+
+  /// Removes what a run that was killed had begun to write.
+  void remove_partial_files() const {
+    std::vector<std::filesystem::path> partial;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("trial-") && name.ends_with(apps::partial_suffix)) partial.push_back(entry.path());
+    }
+    std::error_code gone;
+    for (const auto& file : partial) std::filesystem::remove(file, gone);
   }
 
   void tell() {
@@ -123,7 +135,7 @@ std::vector<TrialRecord> gather(const Options& options, const ModelSource& sourc
   c.first = static_cast<long>(records.size());
   CertificateFolder folder(options.certificates);
   if (!options.certificates.empty()) {
-    c.certified = [&](long trial, const Certificate& made, double seconds) { folder.write(trial, made, seconds); };
+    c.certified = [&](long trial, const std::string& json, double seconds) { folder.write(trial, json, seconds); };
   }
   long violations =
       std::count_if(records.begin(), records.end(), [](const auto& r) { return r.found.any(Verdict::violated); });
@@ -153,9 +165,9 @@ Json summary_json(const Options& options, const CampaignSummary& summary, bool c
   Json json{{"format", "maximin-campaign"},
             {"version", 1},
             {"maximin", MAXIMIN_VERSION},
-            {"configuration", configuration(options)},
+            {"configuration", told_configuration(options)},
             {"complete", complete}};
-  json["exit_code"] = exit_code(outcome(summary, complete));
+  json["exit_code"] = exit_code(outcome(summary, complete, examination_options(options)));
   json["summary"] = to_json(summary);
   return json;
 }
@@ -184,10 +196,11 @@ int run_campaign_command(const Options& options) {
     apps::print(verdict_text(summary, examination_options(options), replay_options(options), complete));
   }
   if (!options.report.empty()) {
-    apps::write_file(options.report, html_report(configuration(options), records, summary, replay_options(options)),
+    apps::write_file(options.report,
+                     html_report(told_configuration(options), records, summary, replay_options(options)),
                      apps::Overwrite::replace);
   }
-  return exit_code(outcome(summary, complete));
+  return exit_code(outcome(summary, complete, examination_options(options)));
 }
 
 int run_replay_command(const Options& options) {
@@ -196,22 +209,25 @@ int run_replay_command(const Options& options) {
     throw InputError(fmt::format("--save-model: {} exists, expected a new name", options.save_model));
   }
   const TrialRecord record = run_trial(campaign(options), drawn, *options.replay);
+  const ExaminationOptions asked = examination_options(options);
   if (!options.save_model.empty()) write_model(options.save_model, drawn.model);
   if (!options.report.empty()) {
     const auto rounds = round_series(drawn.model.mdp, make_perturbation(drawn.model), examination_options(options));
-    apps::write_file(options.report, html_report(configuration(options), record, rounds), apps::Overwrite::replace);
+    apps::write_file(options.report, html_report(told_configuration(options), record, rounds),
+                     apps::Overwrite::replace);
   }
   if (options.json) {
     Json json = header(options);
     json["format"] = "maximin-trial";
-    json["exit_code"] = exit_code(outcome(record.found));
-    json["record"] = to_json(record);
+    json["configuration"] = told_configuration(options);
+    json["exit_code"] = exit_code(outcome(record.found, asked));
+    json["record"] = to_json(told(record, asked));
     apps::print(apps::json_text(json));
   } else {
     const std::string title = fmt::format("trial {} of seed {} ({})", record.trial, options.seed, record.family);
-    apps::print(verdict_text(title, drawn.model, record.found, examination_options(options)));
+    apps::print(verdict_text(title, drawn.model, record.found, asked));
   }
-  return exit_code(outcome(record.found));
+  return exit_code(outcome(record.found, asked));
 }
 
 }  // namespace maximin::verify_bound

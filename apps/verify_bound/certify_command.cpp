@@ -1,5 +1,6 @@
 #include "certify_command.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -11,28 +12,37 @@
 #include <maximin/apps/common/option_checks.hpp>
 #include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/progress.hpp>
 #include <maximin/apps/common/table.hpp>
 #include <maximin/proofs_check/examination.hpp>
 #include <maximin/proofs_check/trial_record.hpp>
 
 #include "options.hpp"
 #include "outcome.hpp"
+#include "shared_options.hpp"
 
 namespace maximin::verify_bound {
 namespace {
 
+/// x beyond floating point in six digits.
+std::string huge(const Rational& x) {
+  const std::string digits = Integer(abs(numerator(x)) / denominator(x)).str();
+  return fmt::format("{}{}.{}e+{}", x < 0 ? "-" : "", digits[0], digits.substr(1, 5), digits.size() - 1);
+}
+
 /// x in six digits, and exactly where that is as short.
 std::string shown(const Rational& x) {
   const std::string exact = x.str();
-  const std::string rounded = apps::number(static_cast<double>(x));
+  const auto near = static_cast<double>(x);
+  const std::string rounded = std::isfinite(near) ? apps::number(near) : huge(x);
   return exact == rounded || exact.size() > 14 ? rounded : fmt::format("{} = {}", rounded, exact);
 }
 
 std::string limit_text(const Certificate& c) {
   const auto rounds = c.rounds.size();
-  if (!c.limit && c.ties_open) {
-    return fmt::format(
-        "Q_n: undetermined: near its orbit choices tie but for differences that vanish ({} exact rounds)", rounds);
+  if (c.boxes) {
+    return fmt::format("Q_n: enclosed from n = {} on{}", rounds,
+                       c.ties_open ? ": choices tie in the limit but for differences that vanish" : "");
   }
   if (!c.limit) return fmt::format("Q_n: undetermined after {} exact rounds (--max-rounds, --max-period)", rounds);
   const std::string ties = c.limit->all_attained() ? "" : "; choices tie on it that lead to the same backups";
@@ -41,11 +51,16 @@ std::string limit_text(const Certificate& c) {
              : fmt::format("Q_n: cycles with period {}, proved from n = {} on{}", c.limit->period, rounds, ties);
 }
 
-std::string verdicts_text(const Certificate& c) {
+std::string limit_text(const BoundsCertificate& c) {
+  return c.limit ? fmt::format("Q_n: enclosed, from n = {} on for ever", c.rounds.size())
+                 : fmt::format("Q_n: enclosed for {} rounds only (--max-rounds)", c.rounds.size());
+}
+
+std::string verdicts_text(const std::vector<CertifiedClaim>& claims) {
   apps::Table table;
   table.column("claim", apps::Align::left).column("", apps::Align::left).column("verdict", apps::Align::left);
   table.column("left", apps::Align::left).column("right", apps::Align::left);
-  for (const CertifiedClaim& v : c.claims) {
+  for (const CertifiedClaim& v : claims) {
     const Claim& about = claim(v.id);
     if (v.verdict == Verdict::undetermined) {
       table.row({std::string(about.name), std::string(about.title), "undetermined", "", ""});
@@ -57,9 +72,19 @@ std::string verdicts_text(const Certificate& c) {
   return table.text();
 }
 
-Outcome outcome_of(const Certificate& c) {
+template <class Any>
+Outcome outcome_of(const Any& c) {
   if (c.any(Verdict::violated)) return Outcome::violated;
   return c.any(Verdict::undetermined) ? Outcome::undetermined : Outcome::holds;
+}
+
+long period_of(const Certificate& c) {
+  return c.limit ? c.limit->period : 0;
+}
+
+/// A period is not known by bounds.
+long period_of(const BoundsCertificate&) {
+  return 0;
 }
 
 std::string conclusion(Outcome outcome) {
@@ -73,11 +98,13 @@ std::string conclusion(Outcome outcome) {
   }
 }
 
-nlohmann::ordered_json summary_json(const CertifyCommand& options, const Certificate& c, Outcome outcome) {
+template <class Any>
+nlohmann::ordered_json summary_json(const CertifyCommand& options, const Any& c, Outcome outcome) {
   nlohmann::ordered_json json{{"format", "maximin-certify"}, {"version", 1}, {"maximin", MAXIMIN_VERSION}};
   json["certificate"] = options.output;
   json["rounds"] = c.rounds.size();
-  json["period"] = c.limit ? nlohmann::ordered_json(c.limit->period) : nlohmann::ordered_json(nullptr);
+  json["arith"] = options.arith;
+  json["period"] = period_of(c) > 0 ? nlohmann::ordered_json(period_of(c)) : nlohmann::ordered_json(nullptr);
   for (const CertifiedClaim& v : c.claims) {
     auto& entry = json["claims"][std::string(claim(v.id).name)];
     entry["verdict"] = to_string(v.verdict);
@@ -89,13 +116,43 @@ nlohmann::ordered_json summary_json(const CertifyCommand& options, const Certifi
   return json;
 }
 
-std::optional<Certificate> certify_unless_interrupted(const Model<Rational>& model,
-                                                      const GeometryOverrides<Rational>& overrides,
-                                                      const CertifyOptions& options) {
-  try {
-    return certify(model, overrides, options);
-  } catch (const Interrupted&) {
-    return std::nullopt;
+/// Writes the certificate and prints the verdicts. Returns the exit code.
+template <class Any>
+int tell(const CertifyCommand& options, const Any& certificate) {
+  const Outcome outcome = outcome_of(certificate);
+  if (options.output == "-") {
+    apps::print(certificate_json(certificate));
+    apps::note(conclusion(outcome));
+    return exit_code(outcome);
+  }
+  apps::write_file(options.output, certificate_json(certificate),
+                   options.force ? apps::Overwrite::replace : apps::Overwrite::refuse);
+  if (options.json) {
+    apps::print(apps::json_text(summary_json(options, certificate, outcome)));
+  } else {
+    const auto& model = certificate.model;
+    apps::print(fmt::format("{}: {} states, {} actions; certificate in {}\n{}\n\n{}\n{}",
+                            apps::printable(apps::title(model.name, options.model)), model.mdp.states(),
+                            model.mdp.actions(), options.output, limit_text(certificate),
+                            verdicts_text(certificate.claims), conclusion(outcome)));
+  }
+  return exit_code(outcome);
+}
+
+CertifyOptions certify_options(const CertifyCommand& options) {
+  CertifyOptions asked = options.budgets;
+  asked.reading = reading_named(options.reading);
+  asked.tie = tie_named(options.tie);
+  asked.only = claims_named(options.claims);
+  asked.stop = &apps::stop_on_interrupt();
+  return asked;
+}
+
+void refuse_output(const CertifyCommand& options) {
+  if (options.output == "-") {
+    if (options.json) throw InputError("--json: standard output takes the certificate (-o -), expected a file");
+  } else if (!options.force && std::filesystem::exists(options.output)) {
+    throw InputError(fmt::format("--output: {} exists, expected a new name or --force", options.output));
   }
 }
 
@@ -104,19 +161,24 @@ std::optional<Certificate> certify_unless_interrupted(const Model<Rational>& mod
 void declare(CLI::App& command, CertifyCommand& o) {
   apps::declare(command, o.model);
   const std::string group = "Proof";
-  command.add_option("-o,--output", o.output, "write the certificate to this file")
+  command
+      .add_option(
+          "-o,--output", o.output,
+          "write the certificate to this file; - is standard output, and\nthe verdict then a note on standard error")
       ->required()
       ->type_name("FILE")
       ->group(group);
   command.add_flag("--force", o.force, "replace the file if it exists")->group(group);
-  command.add_option("--reading", o.reading, "R_max as the paper prints it, or corrected (the default)")
-      ->check(apps::one_of({"paper", "corrected"}))
+  command
+      .add_option("--arith", o.arith,
+                  "exact, rational numbers (the default); or certified, bounds in\n"
+                  "their place: for thousands of states, never says violated,\n"
+                  "leaves lemma-3 out")
+      ->check(apps::one_of({"exact", "certified"}))
       ->type_name("WORD")
       ->group(group);
-  command.add_option("--tie", o.tie, "which index wins among equals: lowest (the default) or highest")
-      ->check(apps::one_of({"lowest", "highest"}))
-      ->type_name("WORD")
-      ->group(group);
+  add_reading(command, o.reading)->group(group);
+  add_tie(command, o.tie)->group(group);
   command.add_option("--claims", o.claims, "claims to prove, separated by commas (default: all)")
       ->delimiter(',')
       ->type_name("LIST")
@@ -127,40 +189,35 @@ void declare(CLI::App& command, CertifyCommand& o) {
         ->type_name("N")
         ->group(group);
   };
-  budget("--max-rounds", o.budgets.max_rounds, 10'000'000, "exact rounds before the limit is undetermined");
+  budget("--max-rounds", o.budgets.max_rounds, 10'000'000, "rounds before the limit is undetermined");
   budget("--max-period", o.budgets.max_period, 10'000, "longest cycle that is looked for");
-  budget("--max-positions", o.budgets.max_positions, 10'000'000, "(state, belief) pairs before F is undetermined");
+  budget("--max-positions", o.budgets.max_positions, 10'000'000,
+         "(state, belief) pairs of claim F that are listed; others count\nfor the least value there is");
   command.add_flag("--json", o.json, "one JSON object on standard output, nothing else")->group(group);
+  command.add_flag("--quiet", o.quiet, "no progress line")->group(group);
 }
 
 int run_certify_command(const CertifyCommand& options) {
-  CertifyOptions asked = options.budgets;
-  asked.reading = options.reading == "paper" ? Reading::paper : Reading::corrected;
-  asked.tie = options.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
-  asked.only = claims_named(options.claims);
-  asked.stop = &apps::stop_on_interrupt();
-  const auto overwrite = options.force ? apps::Overwrite::replace : apps::Overwrite::refuse;
-  if (!options.force && std::filesystem::exists(options.output)) {
-    throw InputError(fmt::format("--output: {} exists, expected a new name or --force", options.output));
-  }
+  CertifyOptions asked = certify_options(options);
+  refuse_output(options);
   const Model<Rational> model = apps::load_exactly(options.model);
-  const auto made = certify_unless_interrupted(model, apps::exact_overrides(options.model), asked);
-  if (!made) {
+  const auto overrides = apps::exact_overrides(options.model);
+  try {
+    std::optional<apps::StageProgress> progress(std::in_place, "certify", options.quiet || options.json);
+    asked.progress = [&progress](const char* stage, long n) { progress->stage(stage, n); };
+    const auto told = [&](const auto& certificate) {
+      progress.reset();
+      return tell(options, certificate);
+    };
+    return options.arith == "certified" ? told(certify_by_bounds(model, overrides, asked))
+                                        : told(certify(model, overrides, asked));
+  } catch (const Interrupted&) {
     apps::complain("verify_bound certify", "interrupted; nothing was written");
     return apps::ExitCode::interrupted;
+  } catch (const BudgetExhausted& too_large) {
+    if (options.arith == "certified") throw;
+    throw BudgetExhausted(fmt::format("{}; --arith certified takes larger models", too_large.what()));
   }
-  const Certificate& certificate = *made;
-  apps::write_file(options.output, certificate_json(certificate), overwrite);
-  const Outcome outcome = outcome_of(certificate);
-  if (options.json) {
-    apps::print(apps::json_text(summary_json(options, certificate, outcome)));
-  } else {
-    apps::print(fmt::format("{}: {} states, {} actions; certificate in {}\n{}\n\n{}\n{}",
-                            apps::printable(apps::title(model.name, options.model)), model.mdp.states(),
-                            model.mdp.actions(), options.output, limit_text(certificate), verdicts_text(certificate),
-                            conclusion(outcome)));
-  }
-  return exit_code(outcome);
 }
 
 }  // namespace maximin::verify_bound

@@ -6,18 +6,18 @@
 #include <CLI/CLI.hpp>
 
 #include <maximin/apps/common/model_options.hpp>
-#include <maximin/proofs_check/certificate/certificate.hpp>
+#include <maximin/proofs_check/certificate/bounds_certificate.hpp>
 
 namespace maximin::verify_bound {
 
 /// What `verify_bound certify` can be asked.
 struct CertifyCommand {
   apps::ModelOptions model;
-  std::string reading = "corrected", tie = "lowest";
+  std::string arith = "exact", reading = "corrected", tie = "lowest";
   std::vector<std::string> claims;
   CertifyOptions budgets;
   std::string output;
-  bool force = false, json = false;
+  bool force = false, json = false, quiet = false;
 };
 
 void declare(CLI::App& command, CertifyCommand& options);

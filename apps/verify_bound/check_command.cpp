@@ -1,16 +1,16 @@
 #include "check_command.hpp"
 
-#include <algorithm>
 #include <fstream>
+#include <iostream>
+#include <set>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <maximin/apps/common/json_output.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/table.hpp>
 #include <maximin/proofs_check/checker/checker.hpp>
-#include <maximin/theory/error.hpp>
 
 #include "outcome.hpp"
 
@@ -18,20 +18,15 @@ namespace maximin::verify_bound {
 namespace {
 
 checker::Report checked(const std::string& file) {
+  if (file == "-") return checker::check(std::cin);
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file + ": cannot be read, expected a certificate");
-  try {
-    return checker::check(in);
-  } catch (const checker::Refused& refused) {
-    throw InputError(fmt::format("{}: {}", file, refused.what()));
-  }
+  if (!in) throw checker::Refused("cannot be read, expected a certificate");
+  return checker::check(in);
 }
 
 Outcome outcome_of(const checker::Report& report) {
-  const auto says = [&](const char* verdict) {
-    return std::any_of(report.claims.begin(), report.claims.end(), [&](const auto& c) { return c.verdict == verdict; });
-  };
-  return says("violated") ? Outcome::violated : says("undetermined") ? Outcome::undetermined : Outcome::holds;
+  if (report.worst() == "violated") return Outcome::violated;
+  return report.worst() == "undetermined" ? Outcome::undetermined : Outcome::holds;
 }
 
 /// An exact number, cut where it is long.
@@ -50,7 +45,9 @@ std::string text(const std::string& file, const checker::Report& report) {
   const char* verdict = outcome == Outcome::violated       ? "a claim is violated, and that is proved"
                         : outcome == Outcome::undetermined ? "what holds is proved; a claim is open"
                                                            : "all that it claims is proved";
-  return fmt::format("{}: a valid certificate; {}\n\n{}\n", apps::printable(file), verdict, table.text());
+  const std::string left_out =
+      report.left_out.empty() ? "" : fmt::format("not in this certificate: {}\n", fmt::join(report.left_out, ", "));
+  return fmt::format("{}: a valid certificate; {}\n\n{}{}\n", apps::printable(file), verdict, table.text(), left_out);
 }
 
 nlohmann::ordered_json report_json(const std::string& file, const checker::Report& report) {
@@ -61,13 +58,14 @@ nlohmann::ordered_json report_json(const std::string& file, const checker::Repor
     entry["left"] = c.left;
     entry["right"] = c.right;
   }
+  json["left_out"] = report.left_out;
   return json;
 }
 
 }  // namespace
 
 void declare(CLI::App& command, CheckCommand& o) {
-  command.add_option("CERTIFICATE", o.files, "certificates written by verify_bound certify")
+  command.add_option("CERTIFICATE", o.files, "certificates written by verify_bound certify; - is standard\ninput")
       ->required()
       ->type_name("FILE");
   command.add_flag("--json", o.json, "one JSON object on standard output, nothing else");
@@ -75,20 +73,28 @@ void declare(CLI::App& command, CheckCommand& o) {
 
 int run_check_command(const CheckCommand& options) {
   nlohmann::ordered_json all{{"format", "maximin-check"}, {"version", 1}, {"maximin", MAXIMIN_VERSION}};
-  bool violated = false, undetermined = false;
-  std::string printed;
+  std::set<int> codes;
   for (const std::string& file : options.files) {
-    const checker::Report report = checked(file);
-    violated = violated || outcome_of(report) == Outcome::violated;
-    undetermined = undetermined || outcome_of(report) == Outcome::undetermined;
-    if (options.json) {
-      all["certificates"].push_back(report_json(file, report));
-    } else {
-      printed += text(file, report);
+    try {
+      const checker::Report report = checked(file);
+      codes.insert(exit_code(outcome_of(report)));
+      if (options.json) {
+        all["certificates"].push_back(report_json(file, report));
+      } else {
+        apps::print(text(file, report));
+      }
+    } catch (const checker::Refused& refused) {
+      codes.insert(apps::ExitCode::bad_input);
+      apps::complain("verify_bound check", fmt::format("{}: {}", file, refused.what()));
+      all["certificates"].push_back(
+          {{"file", file}, {"exit_code", apps::ExitCode::bad_input}, {"refused", refused.what()}});
     }
   }
-  apps::print(options.json ? apps::json_text(all) : printed);
-  return exit_code(violated ? Outcome::violated : undetermined ? Outcome::undetermined : Outcome::holds);
+  if (options.json) apps::print(apps::json_text(all));
+  for (const int worst : {apps::ExitCode::bad_input, apps::ExitCode::violated, apps::ExitCode::undetermined}) {
+    if (codes.contains(worst)) return worst;
+  }
+  return apps::ExitCode::success;
 }
 
 }  // namespace maximin::verify_bound

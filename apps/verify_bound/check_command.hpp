@@ -15,8 +15,9 @@ struct CheckCommand {
 
 void declare(CLI::App& command, CheckCommand& options);
 
-/// Verifies certificates, each from its file alone, and prints their verdicts. Returns the exit code: that of the
-/// worst, a violated claim before an undetermined one. Throws InputError at the first file that is no certificate.
+/// Verifies certificates, each from its file alone, and prints their verdicts. A file that is no certificate
+/// is told in one line on standard error, and the others are verified all the same. Returns the exit code of the worst:
+/// no certificate before a violated claim before an undetermined one.
 int run_check_command(const CheckCommand& options);
 
 }  // namespace maximin::verify_bound

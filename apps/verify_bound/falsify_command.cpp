@@ -19,10 +19,8 @@
 #include <maximin/apps/common/progress.hpp>
 #include <maximin/apps/common/table.hpp>
 #include <maximin/models/model_family.hpp>
-#include <maximin/models/rationalise.hpp>
 #include <maximin/models/shrink.hpp>
 #include <maximin/proofs_check/campaign.hpp>
-#include <maximin/proofs_check/certificate/exact_examination.hpp>
 #include <maximin/proofs_check/falsify/climb.hpp>
 #include <maximin/proofs_check/falsify/goal.hpp>
 #include <maximin/proofs_check/trial_file.hpp>
@@ -30,6 +28,7 @@
 
 #include "options.hpp"
 #include "outcome.hpp"
+#include "shared_options.hpp"
 #include "violation.hpp"
 
 namespace maximin::verify_bound {
@@ -57,16 +56,17 @@ struct Found {
   long restarts = 0;
   std::optional<Model<double>> model;  ///< shrunk
   double score = 0;
-  Verdict proved = Verdict::undetermined;  ///< of the model's claim in exact arithmetic; holds: not refuted
+  Verdict proved = Verdict::undetermined;  ///< of the goal in exact arithmetic; holds: not refuted
+  const Goal* found_for = nullptr;         ///< the goal whose search found the model
   std::string file;
 
-  bool hit() const { return model && score > goal->threshold; }
+  bool hit() const { return model && (score > goal->threshold || proved == Verdict::violated); }
 };
 
 ExaminationOptions examination(const FalsifyCommand& o) {
   ExaminationOptions e;
-  e.reading = o.reading == "paper" ? Reading::paper : Reading::corrected;
-  e.tie = o.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
+  e.reading = reading_named(o.reading);
+  e.tie = tie_named(o.tie);
   e.max_iterations = 2'000;
   e.max_belief_positions = 2'000;
   return e;
@@ -126,7 +126,7 @@ std::vector<double> scores(const FalsifyCommand& o, const Goal& goal, std::chron
   c.seed = o.seed;
   c.first = static_cast<long>(found.size());
   c.trials = o.restarts;
-  c.threads = o.threads > 0 ? o.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  c.threads = threads_for(o.threads);
   c.examination = examination(o);
   c.examination.only.emplace();
   if (goal.claim) c.examination.only->insert(*goal.claim);
@@ -160,18 +160,6 @@ Model<double> shrunk_model(const FalsifyCommand& o, const Goal& goal, long resta
   return shrink(drawn.model, keeps, 3'000);
 }
 
-Verdict proved(const FalsifyCommand& o, const Goal& goal, const Model<double>& model) {
-  if (goal.claim) {
-    ExaminationOptions e = examination(o);
-    e.only = {*goal.claim};
-    return examine_exactly(rationalise(model), {}, e).check(*goal.claim).verdict;
-  }
-  if (goal.name == "sharper-belief") return Verdict::undetermined;
-  const Examination e = examine_exactly(rationalise(model), {}, examination(o));
-  if (e.fate == Fate::undetermined) return Verdict::undetermined;
-  return e.fate == Fate::cycles ? Verdict::violated : Verdict::holds;
-}
-
 /// The restarts from the best down.
 std::vector<long> ranked(const std::vector<double>& scores) {
   std::vector<long> order;
@@ -188,28 +176,49 @@ std::vector<long> ranked(const std::vector<double>& scores) {
 Found search(const FalsifyCommand& o, const Goal& goal, std::chrono::milliseconds time) {
   constexpr std::size_t most_tries = 10;
   const std::vector<double> all = scores(o, goal, time);
-  Found found{&goal, static_cast<long>(all.size()), std::nullopt, -INFINITY, Verdict::undetermined, ""};
+  Found found{&goal, static_cast<long>(all.size()), std::nullopt, -INFINITY, Verdict::undetermined, &goal, ""};
   const std::vector<long> order = ranked(all);
   for (std::size_t i = 0; i < std::min(most_tries, order.size()); ++i) {
     const double best = all[static_cast<std::size_t>(order[i])];
     if (found.hit() && !(best > goal.threshold)) break;
     Model<double> model = shrunk_model(o, goal, order[i], best);
-    const Verdict verdict = proved(o, goal, model);
+    const Verdict verdict = proved(goal, model, examination(o));
     if (found.model && verdict == Verdict::undetermined) continue;
     found.score = score(goal, model, examination(o));
     found.proved = verdict;
     found.model = std::move(model);
-    if (verdict != Verdict::undetermined || goal.name == "sharper-belief") break;
+    if (verdict != Verdict::undetermined) break;
   }
-  if (!found.model) return found;
-  found.model->name = fmt::format("{}: score {:.6g} (falsify, seed {})", goal.name, found.score, o.seed);
-  found.file = save_under_new_name(std::filesystem::path(o.directory) / fmt::format("falsify-{}-{}", o.seed, goal.name),
-                                   *found.model);
   return found;
 }
 
+/// Tries the models of the other goals on this one, and takes the best of those that exact arithmetic says no less of.
+void adopt(const FalsifyCommand& o, Found& to, const std::vector<Found>& all) {
+  const Found own = to;
+  for (const Found& from : all) {
+    if (from.goal == own.goal || !from.model) continue;
+    const double better = score(*own.goal, *from.model, examination(o));
+    if (!(better > to.score)) continue;
+    const Verdict verdict = proved(*own.goal, *from.model, examination(o));
+    if (verdict == Verdict::undetermined && own.proved != Verdict::undetermined) continue;
+    to = {own.goal, own.restarts, from.model, better, verdict, from.goal, ""};
+  }
+}
+
+/// What each search found, on the best model of them all, which is written.
+std::vector<Found> shared(const FalsifyCommand& o, const std::vector<Found>& searched) {
+  std::vector<Found> all = searched;
+  for (Found& f : all) {
+    adopt(o, f, searched);
+    if (!f.model) continue;
+    f.model->name = fmt::format("{}: score {:.6g} (falsify, seed {})", f.goal->name, f.score, o.seed);
+    f.file = save_under_new_name(
+        std::filesystem::path(o.directory) / fmt::format("falsify-{}-{}", o.seed, f.goal->name), *f.model);
+  }
+  return all;
+}
+
 const char* what_is_proved(const Found& f) {
-  if (!f.goal->claim && f.goal->name == "sharper-belief") return f.hit() ? "seen, with certified error" : "";
   switch (f.proved) {
     case Verdict::violated:
       return "refuted, proved exactly";
@@ -220,7 +229,24 @@ const char* what_is_proved(const Found& f) {
   }
 }
 
+/// What a search came to, in one line.
+std::string verdict_sentence(const Found& f) {
+  const std::string what = fmt::format("{} ({})", f.goal->name, f.goal->title);
+  if (!f.model) return fmt::format("{}: undetermined, no model was decided.\n", what);
+  if (!f.hit()) {
+    return fmt::format("{}: not refuted in {} restart{}; the highest score is {}, and above {} would refute it.\n",
+                       what, f.restarts, f.restarts == 1 ? "" : "s", apps::number(f.score),
+                       apps::number(f.goal->threshold));
+  }
+  const char* how = f.proved == Verdict::violated ? "REFUTED, proved exactly"
+                    : f.proved == Verdict::holds
+                        ? "REFUTED in floating point with certified error, but on the decimals of its model it holds"
+                        : "REFUTED in floating point with certified error, not proved exactly";
+  return fmt::format("{}: {}: score {} on {}.\n", what, how, apps::number(f.score), f.file);
+}
+
 std::string results_text(const std::vector<Found>& all) {
+  std::string verdicts;
   apps::Table table;
   table.column("goal", apps::Align::left).column("", apps::Align::left).column("restarts");
   table.column("highest score", apps::Align::point).column("hit above").column("on that model", apps::Align::left);
@@ -228,11 +254,13 @@ std::string results_text(const std::vector<Found>& all) {
   for (const Found& f : all) {
     table.row({f.goal->name, f.goal->title, std::to_string(f.restarts), f.model ? apps::number(f.score) : "-",
                apps::number(f.goal->threshold), f.model ? what_is_proved(f) : "no model was decided", f.file});
+    verdicts += verdict_sentence(f);
   }
   return table.text() +
          "\nThe score of a claim is left/right: 1 is attained, above 1 refuted. Of settling it is the period (below 1: "
          "it\n"
-         "settles); of sharper-belief the loss as a part of span(R)/(1-gamma).\n";
+         "settles); of sharper-belief the loss as a part of span(R)/(1-gamma).\n\n" +
+         verdicts;
 }
 
 nlohmann::ordered_json results_json(const std::vector<Found>& all) {
@@ -244,6 +272,7 @@ nlohmann::ordered_json results_json(const std::vector<Found>& all) {
                              {"threshold", f.goal->threshold},
                              {"hit", f.hit()},
                              {"proved", f.model ? what_is_proved(f) : ""},
+                             {"found_for", f.model ? f.found_for->name : ""},
                              {"file", f.file}});
   }
   return json;
@@ -252,8 +281,6 @@ nlohmann::ordered_json results_json(const std::vector<Found>& all) {
 }  // namespace
 
 void declare(CLI::App& command, FalsifyCommand& o) {
-  std::vector<std::string> families;
-  for (const Family f : all_families()) families.emplace_back(family_name(f));
   command
       .add_option("--goal", o.goals, "claims to hunt, settling, sharper-belief, separated by\ncommas (default: all)")
       ->delimiter(',')
@@ -269,21 +296,11 @@ void declare(CLI::App& command, FalsifyCommand& o) {
       ->type_name("N");
   command.add_option("--states", o.states, fmt::format("number of states (default: {})", o.states))
       ->type_name("LOW:HIGH");
-  command.add_option("--family", o.family, "models to start from (default: mixed)")
-      ->check(apps::one_of(families))
-      ->type_name("WORD");
-  command.add_option("--reading", o.reading, "R_max as the paper prints it, or corrected (the default)")
-      ->check(apps::one_of({"paper", "corrected"}))
-      ->type_name("WORD");
-  command.add_option("--tie", o.tie, "which index wins among equals: lowest (the default) or highest")
-      ->check(apps::one_of({"lowest", "highest"}))
-      ->type_name("WORD");
-  command.add_option("--seed", o.seed, "start K of a seed climbs to the same model always (default: 1)")
-      ->check(apps::seed_number())
-      ->type_name("N");
-  command.add_option("--threads", o.threads, "0 takes one per core (the default)")
-      ->check(apps::whole_number(0, 1024))
-      ->type_name("N");
+  add_family(command, o.family, "models to start from (default: mixed)");
+  add_reading(command, o.reading);
+  add_tie(command, o.tie);
+  add_seed(command, o.seed, "start K of a seed climbs to the same model always (default: 1)");
+  add_threads(command, o.threads, "0 takes one per core (the default)");
   command
       .add_option("--model-dir", o.directory, "folder where the best model of each goal is written\n(default: here)")
       ->check(apps::existing_folder())
@@ -307,6 +324,7 @@ int run_falsify_command(const FalsifyCommand& options) {
     all.push_back(search(options, *goal, each));
     if (apps::stop_on_interrupt()) break;
   }
+  all = shared(options, all);
   apps::print(options.json ? apps::json_text(results_json(all)) : results_text(all));
   const bool complete = all.size() == asked.size() && !apps::stop_on_interrupt() &&
                         std::all_of(all.begin(), all.end(), [](const Found& f) { return f.model.has_value(); });

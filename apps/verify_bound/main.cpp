@@ -36,15 +36,16 @@ Examples:
 
 constexpr const char* check_examples =
     R"(The checker shares no code with certify. Exit codes: 0 all that is claimed is proved, 1 a claim is violated and that is
-proved, 2 not a certificate (one line says where), 3 a claim is open. An independent one in plain Python:
-proofs_check/check_certificate.py.
+proved, 2 not a certificate (one line says where), 3 a claim is open; of several the worst, in the order 2, 1, 3, 0. An
+independent one in plain Python: proofs_check/check_certificate.py.
 Examples:
   verify_bound check lake.cert.json
+  verify_bound certify --example cycling -o - | verify_bound check -
   verify_bound check *.cert.json --json)";
 
 constexpr const char* falsify_examples =
-    R"(Random starts, hill climbing, shrinking. Exit codes: 0 no claim was refuted, 1 one was, 3 the search ended
-before every goal had a model.
+    R"(Random starts, hill climbing, shrinking; the best model of each goal is tried on the others too. Exit codes: 0 no claim
+was refuted, 1 one was, 3 the search ended before every goal had a model.
 Examples:
   verify_bound falsify                                   a minute for all goals: how tight is each bound?
   verify_bound falsify --goal theorem-1 --reading paper  the printed theorem falls in seconds

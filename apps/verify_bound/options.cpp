@@ -9,6 +9,8 @@
 
 #include <maximin/theory/error.hpp>
 
+#include "shared_options.hpp"
+
 namespace maximin::verify_bound {
 namespace {
 
@@ -37,13 +39,7 @@ std::optional<Range<T>> range(const std::string& text, std::string_view option, 
 
 void declare_checks(CLI::App& program, Options& o) {
   const std::string group = "What to check";
-  program
-      .add_option("--reading", o.reading,
-                  "R_max of the paper's claims: paper, Assumption 2 as printed,\n"
-                  "R <= R_max; or corrected, |R| <= R_max (the default)")
-      ->check(apps::one_of({"paper", "corrected"}))
-      ->type_name("WORD")
-      ->group(group);
+  add_reading(program, o.reading)->group(group);
   program
       .add_option("--claims", o.claims,
                   "claims to check, separated by commas (default: all): lemma-1,\n"
@@ -53,19 +49,24 @@ void declare_checks(CLI::App& program, Options& o) {
       ->group(group);
   program
       .add_option("--arith", o.arith,
-                  "double, floating point with certified error (the default), or\nexact, rational numbers: what holds "
-                  "is proved")
-      ->check(apps::one_of({"double", "exact"}))
+                  "double, floating point with certified error (the default), or\n"
+                  "exact, rational numbers: what holds is proved; random models\n"
+                  "then have short numbers: rewards and gamma of 3 decimals,\n"
+                  "probabilities in multiples of 1/4096; or certified, the same\n"
+                  "with bounds in the place of exact values, for thousands of\n"
+                  "states: it never says violated, and leaves lemma-3 out")
+      ->check(apps::one_of({"double", "certified", "exact"}))
       ->type_name("WORD")
       ->group(group);
   program
       .add_flag_callback(
           "--exact", [&o] { o.arith = "exact"; }, "short for --arith exact")
       ->group(group);
-  program.add_option("--tie", o.tie, "which index wins among equals: lowest (the default) or highest")
-      ->check(apps::one_of({"lowest", "highest"}))
-      ->type_name("WORD")
+  program
+      .add_flag("--pedantic", o.pedantic,
+                "what holds in floating point alone is undetermined: it held\nwithin rounding, and was not certified")
       ->group(group);
+  add_tie(program, o.tie)->group(group);
   program
       .add_option("--max-iterations", o.max_iterations,
                   fmt::format("rounds of pessimistic Q-iteration before its fate is\nundetermined (default: {})",
@@ -90,26 +91,15 @@ void declare_checks(CLI::App& program, Options& o) {
 
 void declare_campaign(CLI::App& program, Options& o) {
   const std::string group = "Random models (without --model or --example)";
-  std::vector<std::string> names;
-  for (const Family f : all_families()) names.emplace_back(family_name(f));
   program.add_option("--trials", o.trials, fmt::format("models to draw (default: {})", o.trials))
       ->check(apps::whole_number(1, 1'000'000'000))
       ->type_name("N")
       ->group(group);
-  program.add_option("--seed", o.seed, "trial K of a seed is always the same model (default: 1)")
-      ->check(apps::seed_number())
-      ->type_name("N")
-      ->group(group);
-  program.add_option("--threads", o.threads, "0 takes one per core (the default); changes no result")
-      ->check(apps::whole_number(0, 1024))
-      ->type_name("N")
-      ->group(group);
-  program
-      .add_option("--family", o.family,
-                  "kind of models: informative (bounds that say something), broad,\n"
-                  "sparse, cycling (Q_n often cycles), costs (R <= 0), mixed (all of\nthem, the default)")
-      ->check(apps::one_of(names))
-      ->type_name("WORD")
+  add_seed(program, o.seed, "trial K of a seed is always the same model (default: 1)")->group(group);
+  add_threads(program, o.threads, "0 takes one per core (the default); changes no result")->group(group);
+  add_family(program, o.family,
+             "kind of models: informative (bounds that say something), broad,\n"
+             "sparse, cycling (Q_n often cycles), costs (R <= 0), mixed (all of\nthem, the default)")
       ->group(group);
   const auto range_option = [&](const char* name, std::string& value, const char* description) {
     program.add_option(name, value, description)->type_name("LOW:HIGH")->group(group);
@@ -163,7 +153,9 @@ void declare_output(CLI::App& program, Options& o) {
   program
       .add_option(
           "--certificates", o.certificates,
-          "with --exact: write the certificate of each trial K to\nDIR/trial-K.json, and say how long they took")
+          "with --exact: write the certificate of each trial K to\nDIR/trial-K.json, and say how long they took. A run "
+          "that\nis killed may leave trial-K.json.*.partial, which the next\nrun there removes; with --resume only "
+          "trials that are not\nin the file yet are certified")
       ->check(apps::existing_folder())
       ->type_name("DIR")
       ->group(group);
@@ -181,11 +173,16 @@ void declare(CLI::App& program, Options& o) {
 }
 
 void check_combination(const CLI::App& program, const Options& o) {
+  if (const auto asked = program.get_option("--arith")->results();
+      program.count("--exact") > 0 && !asked.empty() && asked.front() != "exact") {
+    throw InputError(fmt::format("--exact: given beside --arith {}, expected one of the two", asked.front()));
+  }
   if (!o.model.given()) {
     const std::string where = "on random models";
     apps::refuse_given(program, {"--discount"}, where, "--gamma, or --model or --example beside it");
     apps::refuse_given(program, {"--metric", "--reward-model", "--intervals"}, where, "--model or --example beside it");
-    if (!o.certificates.empty() && !is_exact(o)) throw InputError("--certificates: expected --exact beside it");
+    if (!o.certificates.empty() && !is_exact(o))
+      throw InputError("--certificates: expected --arith exact or certified beside it");
     if (!o.replay) return;
     apps::refuse_given(program,
                        {"--certificates", "--trials", "--threads", "--trials-out", "--resume", "--violation-dir"},
@@ -219,12 +216,14 @@ std::optional<std::set<ClaimId>> claims_named(const std::vector<std::string>& na
 
 ExaminationOptions examination_options(const Options& o) {
   ExaminationOptions e;
-  e.reading = o.reading == "paper" ? Reading::paper : Reading::corrected;
-  e.tie = o.tie == "highest" ? TieBreak::highest_index : TieBreak::lowest_index;
+  e.reading = reading_named(o.reading);
+  e.tie = tie_named(o.tie);
   e.max_iterations = o.max_iterations;
   e.max_belief_positions = o.max_positions;
   e.max_period = o.max_period;
   e.exact = is_exact(o);
+  e.by_bounds = o.arith == "certified";
+  e.pedantic = o.pedantic;
   e.only = claims_named(o.claims);
   return e;
 }
@@ -238,7 +237,7 @@ FamilyOptions family_options(const Options& o) {
   f.states = state_range(o.states);
   f.actions = range<Action>(o.actions, "--actions", 1, 1000);
   f.discount = range<double>(o.gamma, "--gamma", 0.0, 0.999999);
-  f.eps = o.model.eps;
+  if (!o.model.eps.empty()) f.eps = apps::nearest_number(o.model.eps);
   f.l_r = o.l_r;
   f.l_p = o.l_p;
   f.dimension = o.dimension;
@@ -248,6 +247,9 @@ FamilyOptions family_options(const Options& o) {
 }
 
 nlohmann::ordered_json configuration(const Options& o) {
+  nlohmann::ordered_json eps = nullptr;  // a fraction as it is written
+  if (!o.model.eps.empty()) eps = apps::nearest_number(o.model.eps);
+  if (o.model.eps.find('/') != std::string::npos) eps = o.model.eps;
   const auto optional = [](const auto& x) { return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json(nullptr); };
   return {{"reading", o.reading},
           {"arith", o.arith},
@@ -262,12 +264,18 @@ nlohmann::ordered_json configuration(const Options& o) {
           {"states", o.states},
           {"actions", o.actions},
           {"gamma", o.gamma},
-          {"eps", optional(o.model.eps)},
+          {"eps", eps},
           {"l_r", optional(o.l_r)},
           {"l_p", optional(o.l_p)},
           {"norm", o.model.norm},
           {"dimension", optional(o.dimension)},
           {"successors", optional(o.successors)}};
+}
+
+nlohmann::ordered_json told_configuration(const Options& o) {
+  nlohmann::ordered_json told = configuration(o);
+  if (o.pedantic) told["pedantic"] = true;
+  return told;
 }
 
 std::string replay_options(const Options& o) {
@@ -277,7 +285,7 @@ std::string replay_options(const Options& o) {
   if (!o.states.empty()) add("--states", o.states);
   if (!o.actions.empty()) add("--actions", o.actions);
   if (!o.gamma.empty()) add("--gamma", o.gamma);
-  if (o.model.eps) add("--eps", *o.model.eps);
+  if (!o.model.eps.empty()) add("--eps", o.model.eps);
   if (o.l_r) add("--l-r", *o.l_r);
   if (o.l_p) add("--l-p", *o.l_p);
   if (!o.model.norm.empty()) add("--norm", o.model.norm);
@@ -285,7 +293,7 @@ std::string replay_options(const Options& o) {
   if (o.successors) add("--successors", *o.successors);
   if (o.reading != "corrected") add("--reading", o.reading);
   if (o.tie != "lowest") add("--tie", o.tie);
-  if (is_exact(o)) text += " --exact";
+  if (is_exact(o)) add("--arith", o.arith);
   const Options unchanged;
   if (o.max_iterations != unchanged.max_iterations) add("--max-iterations", o.max_iterations);
   if (o.max_period != unchanged.max_period) add("--max-period", o.max_period);

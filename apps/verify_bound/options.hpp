@@ -23,6 +23,7 @@ struct Options {
   std::string reading = "corrected";
   std::vector<std::string> claims;
   std::string arith = "double";
+  bool pedantic = false;
   std::string tie = "lowest";
   long max_iterations = 20'000;
   long max_period = 64;
@@ -54,7 +55,7 @@ struct Options {
 
 /// Whether rational numbers were asked for.
 inline bool is_exact(const Options& options) {
-  return options.arith == "exact";
+  return options.arith != "double";
 }
 
 /// Declares the options on the program.
@@ -79,6 +80,9 @@ FamilyOptions family_options(const Options& options);
 /// Everything that the results depend on, for the header of the trials file and the summary. Never the number of
 /// threads.
 nlohmann::ordered_json configuration(const Options& options);
+
+/// The same and how the results are told, for those who read them.
+nlohmann::ordered_json told_configuration(const Options& options);
 
 /// The options that make the same models again, for a command line that replays a trial.
 std::string replay_options(const Options& options);

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -100,8 +101,12 @@ struct CertifyOptions {
   long max_pair_states = 1'000;  ///< Lemma 1 looks at pairs of states; of more states it is undetermined
   long max_exact_positions = 150;           ///< more have lower bounds in the place of exact values
   const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: ends with Interrupted
+  /// Told what is begun, e.g. "round", and of which n, or -1.
+  std::function<void(const char* stage, long n)> progress = {};
 
   bool wants(ClaimId id) const { return !only || only->contains(id); }
+  /// Tells what is begun. Throws Interrupted when it is to stop.
+  void begin(const char* stage, long n = -1) const;
 };
 
 /// Proves the claims on one model, exactly. Throws AssumptionFails where no Lipschitz constant exists, BudgetExhausted

@@ -59,10 +59,6 @@ class Certifier {
   }
 
  private:
-  void poll() const {
-    if (options_.stop && *options_.stop) throw Interrupted();
-  }
-
   /// Runs rounds, exactly, until the limit is known or a budget ends them. An orbit tells most. Where none is found for
   /// long, boxes are tried every so often: if they prove what is wanted, they end the search.
   void iterate() {
@@ -71,7 +67,7 @@ class Certifier {
     long next_boxes = options_.rounds_before_boxes;
     ScaledTable q{QTable<Integer>::Constant(mdp_.states(), mdp_.actions(), Integer(0)), 1};
     for (long n = 0;;) {
-      poll();
+      options_.begin("round", n);
       Policy composed = round(n++, q);
       if (const auto entered = search.after_round(std::move(composed), q)) return follow(n, q, *entered);
       const bool over =
@@ -86,6 +82,7 @@ class Certifier {
 
   /// The rounds from n on follow an orbit.
   void follow(long n, const ScaledTable& q, const EnteredOrbit& entered) {
+    options_.begin("limit from round", n);
     result_.ties_open = false;
     result_.boxes.reset();
     result_.limit = certify_limit(mdp_, balls_, entered.orbit, entered.phases, options_.tie);
@@ -94,6 +91,7 @@ class Certifier {
 
   /// Boxes around all rounds from n on. Returns whether they prove every claim about rounds that is wanted.
   bool enclose(const Boxes& boxes, long n, long period) {
+    options_.begin("boxes from round", n);
     result_.boxes = boxes.limit_after(boxes.on_grid(passed_), std::max(1L, period));
     if (!result_.boxes) {
       claims_.no_limit();
@@ -136,6 +134,7 @@ class Certifier {
   }
 
   void test_time() {
+    options_.begin("pessimism at test time");
     std::vector<Rational> scratch;
     maximin_policy(optimal_.q, balls_, result_.test_time_policy, scratch, MinAggregator{}, options_.tie);
     result_.test_time_robust = evaluate_against_optimal_attack(mdp_, balls_, result_.test_time_policy).v;
@@ -144,7 +143,7 @@ class Certifier {
 
   void beliefs() {
     if (!options_.wants(ClaimId::f_belief)) return;
-    poll();
+    options_.begin("belief game");
     result_.belief_game = certify_belief_game(mdp_, geometry_, optimal_.q, options_);
     if (!result_.belief_game) return;
     claims_.beliefs(*result_.belief_game, start_values(*result_.belief_game, balls_), result_.l_star.value);
@@ -165,8 +164,14 @@ class Certifier {
 
 }  // namespace
 
+void CertifyOptions::begin(const char* stage, long n) const {
+  if (stop && *stop) throw Interrupted();
+  if (progress) progress(stage, n);
+}
+
 Certificate certify(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
                     const CertifyOptions& options) {
+  options.begin("optimal values");
   return Certifier(model, overrides, options).run();
 }
 

@@ -7,7 +7,6 @@
 #include <maximin/proofs_check/certificate/exact_claims.hpp>
 #include <maximin/proofs_check/certificate/exact_geometry.hpp>
 #include <maximin/proofs_check/certificate/witnesses.hpp>
-#include <maximin/proofs_check/examination.hpp>
 #include <maximin/tabular/scaled.hpp>
 
 namespace maximin {
@@ -49,23 +48,20 @@ class BoundsCertifier {
   }
 
  private:
-  void poll() const {
-    if (options_.stop && *options_.stop) throw Interrupted();
-  }
-
   /// Runs rounds until boxes around all later ones prove what is wanted, or a budget ends them. They are tried at
   /// N = 8, 16, 32, ...
   void iterate() {
     long next_attempt = 8;
     std::optional<ValueBox> before;
     for (long n = 0; n < options_.max_rounds; ++n) {
-      poll();
+      options_.begin("round", n);
       RoundBox round = before ? boxes_.round_after(*before) : boxes_.first_round();
       result_.rounds.push_back(index_of(n, round));
       claims_.boxed_round(n, before ? &*before : nullptr, round, result_.rounds.back());
       before = std::move(round.passed);
       if (n + 1 < next_attempt && n + 1 < options_.max_rounds) continue;
       next_attempt *= 2;
+      options_.begin("boxes from round", n + 1);
       result_.limit = boxes_.limit_after(*before, period());
       if (!result_.limit) continue;
       result_.gap = claims_.boxed_limit(n + 1, *result_.limit);
@@ -103,7 +99,7 @@ class BoundsCertifier {
 
   void beliefs() {
     if (!options_.wants(ClaimId::f_belief)) return;
-    poll();
+    options_.begin("belief game");
     CertifyOptions bounded = options_;
     bounded.max_exact_positions = 0;
     const TableBox<Integer> q = q_star();
@@ -134,6 +130,7 @@ class BoundsCertifier {
 
 BoundsCertificate certify_by_bounds(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
                                     const CertifyOptions& options) {
+  options.begin("optimal values");
   return BoundsCertifier(model, overrides, options).run();
 }
 

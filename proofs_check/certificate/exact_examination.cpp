@@ -54,9 +54,8 @@ Examination all(Verdict verdict, const Model<Rational>& model, const Examination
   return e;
 }
 
-}  // namespace
-
-Examination examination_of(const Certificate& c) {
+template <class Any>
+Examination what_both_say(const Any& c) {
   Examination e;
   set_model(e, c.model);
   e.eps = e.radius = rounded(*c.model.geometry.eps);
@@ -66,6 +65,16 @@ Examination examination_of(const Certificate& c) {
   e.iterations = static_cast<long>(c.rounds.size());
   e.pairs = static_cast<long>(c.pairs.size());
   e.largest_ball = c.largest_ball;
+  e.gap = std::numeric_limits<double>::quiet_NaN();
+  if (c.belief_game) e.belief_positions = static_cast<long>(c.belief_game->positions.size());
+  for (const CertifiedClaim& claim : c.claims) e.check(claim.id) = check_of(claim);
+  return e;
+}
+
+}  // namespace
+
+Examination examination_of(const Certificate& c) {
+  Examination e = what_both_say(c);
   e.pessimism_changes_action = c.pessimism_changes_action;
   e.attack_changes_action = std::any_of(c.pairs.begin(), c.pairs.end(), [](const CertifiedPair& p) {
     for (std::size_t s = 0; s < p.policies.policy.size(); ++s) {
@@ -73,21 +82,25 @@ Examination examination_of(const Certificate& c) {
     }
     return false;
   });
-  e.gap = std::numeric_limits<double>::quiet_NaN();
+  if (c.boxes) e.enclosed_from = e.iterations;
   if (c.limit) {
     e.fate = c.limit->period == 1 ? Fate::settled : Fate::cycles;
     e.period = c.limit->period;
     e.periodic_from = e.iterations;
     e.gap = rounded(c.limit->gap);
   }
-  if (c.belief_game) e.belief_positions = static_cast<long>(c.belief_game->positions.size());
-  for (const CertifiedClaim& claim : c.claims) e.check(claim.id) = check_of(claim);
+  return e;
+}
+
+Examination examination_of(const BoundsCertificate& c) {
+  Examination e = what_both_say(c);
+  if (c.limit) e.enclosed_from = e.iterations;
   return e;
 }
 
 Examination examine_exactly(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
                             const ExaminationOptions& options,
-                            const std::function<void(const Certificate&)>& certified) {
+                            const std::function<void(const std::string&)>& certified) {
   CertifyOptions exact;
   exact.reading = options.reading;
   exact.tie = options.tie;
@@ -96,10 +109,14 @@ Examination examine_exactly(const Model<Rational>& model, const GeometryOverride
   exact.max_period = options.max_period;
   exact.max_positions = options.max_belief_positions;
   exact.stop = options.stop;
+  exact.progress = options.progress;
   try {
-    const Certificate certificate = certify(model, overrides, exact);
-    if (certified) certified(certificate);
-    return examination_of(certificate);
+    const auto told = [&](const auto& certificate) {
+      if (certified) certified(certificate_json(certificate));
+      return examination_of(certificate);
+    };
+    return options.by_bounds ? told(certify_by_bounds(model, overrides, exact))
+                             : told(certify(model, overrides, exact));
   } catch (const AssumptionFails& failed) {
     Examination e = all(Verdict::assumption_fails, model, options);
     e.failed_assumption = failed.what();

@@ -1,5 +1,6 @@
 #include "checker.hpp"
 
+#include <algorithm>
 #include <istream>
 
 #include "claims.hpp"
@@ -40,7 +41,7 @@ Report check_sections(const Node& root) {
   if (!belief_game.is_null()) game = check_belief_game(belief_game, model, q_star, highest);
   claims.of_belief_game(game ? &*game : nullptr);
 
-  Report report{model.states, model.actions, n, phases, {}};
+  Report report{model.states, model.actions, n, phases, {}, left_out(checks)};
   for (const ClaimCheck& check : checks) {
     if (!check.undetermined()) check.verify();
     report.claims.push_back(check.verdict());
@@ -49,6 +50,15 @@ Report check_sections(const Node& root) {
 }
 
 }  // namespace
+
+std::string_view Report::worst() const {
+  for (const std::string_view verdict : {"violated", "undetermined"}) {
+    if (std::any_of(claims.begin(), claims.end(), [&](const ClaimVerdict& c) { return c.verdict == verdict; })) {
+      return verdict;
+    }
+  }
+  return "holds";
+}
 
 Report check(std::string_view text, const Limits& limits) {
   const nlohmann::json json = parse_json(text, limits);

@@ -40,6 +40,10 @@ struct Report {
   std::size_t rounds = 0;  ///< N, the rounds that were replayed
   std::size_t period = 0;  ///< of the limit; 0 where it was not decided
   std::vector<ClaimVerdict> claims;
+  std::vector<std::string> left_out;  ///< claims that the certificate says nothing of
+
+  /// What the claims come to: "violated" before "undetermined" before "holds".
+  std::string_view worst() const;
 };
 
 /// Verifies one certificate. Throws Refused, and for no input anything else but std::bad_alloc.

@@ -172,4 +172,13 @@ std::vector<ClaimCheck> read_claims(const Node& node, const Model& model, std::s
   return claims;
 }
 
+std::vector<std::string> left_out(const std::vector<ClaimCheck>& claims) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    const auto is_it = [i](const ClaimCheck& claim) { return static_cast<std::size_t>(claim.id()) == i; };
+    if (std::none_of(claims.begin(), claims.end(), is_it)) names.emplace_back(forms[i].name);
+  }
+  return names;
+}
+
 }  // namespace maximin::checker

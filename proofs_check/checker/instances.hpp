@@ -59,4 +59,7 @@ class ClaimCheck {
 /// Reads the section: entries in the order of the claims, none twice.
 std::vector<ClaimCheck> read_claims(const Node& node, const Model& model, std::size_t rounds);
 
+/// The names of the claims that have no entry.
+std::vector<std::string> left_out(const std::vector<ClaimCheck>& claims);
+
 }  // namespace maximin::checker

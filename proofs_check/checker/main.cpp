@@ -1,6 +1,7 @@
 #include <gmpxx.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -36,11 +37,7 @@ Exit worse(Exit x, Exit y) {
 }
 
 Exit outcome(const Report& report) {
-  Exit code = all_hold;
-  for (const ClaimVerdict& claim : report.claims) {
-    if (claim.verdict != "holds") code = worse(code, claim.verdict == "violated" ? violated : undetermined);
-  }
-  return code;
+  return report.worst() == "violated" ? violated : report.worst() == "undetermined" ? undetermined : all_hold;
 }
 
 Report check_file(const std::string& name) {
@@ -52,11 +49,13 @@ Report check_file(const std::string& name) {
   return maximin::checker::check(file);
 }
 
-/// A side for a table: exact where that is short, else six digits.
+/// A side for a table: exact where that is short, else six digits, or its first ones where no double is as large.
 std::string short_text(const std::string& number) {
   if (number.size() <= 12) return number;
   char text[32];
-  std::snprintf(text, sizeof text, "~%.6g", mpq_class(number).get_d());
+  const double near = mpq_class(number).get_d();
+  if (!std::isfinite(near)) return number.substr(0, 7) + "... (" + std::to_string(number.size()) + " characters)";
+  std::snprintf(text, sizeof text, "~%.6g", near);
   return text;
 }
 
@@ -72,6 +71,7 @@ void print_table(const std::string& name, const Report& report) {
     }
     std::printf("\n");
   }
+  for (const std::string& claim : report.left_out) std::printf("%-16s  not in this certificate\n", claim.c_str());
 }
 
 nlohmann::ordered_json to_json(const std::string& name, const Report& report) {
@@ -84,7 +84,7 @@ nlohmann::ordered_json to_json(const std::string& name, const Report& report) {
     }
     claims.push_back(std::move(entry));
   }
-  return {{"file", name}, {"exit_code", outcome(report)}, {"claims", std::move(claims)}};
+  return {{"file", name}, {"exit_code", outcome(report)}, {"claims", std::move(claims)}, {"left_out", report.left_out}};
 }
 
 Exit run(const std::vector<std::string>& files, bool json) {

@@ -5,6 +5,9 @@
 #include <stdexcept>
 
 #include <maximin/models/make_perturbation.hpp>
+#include <maximin/models/rationalise.hpp>
+#include <maximin/proofs_check/certificate/belief_positions.hpp>
+#include <maximin/proofs_check/certificate/exact_examination.hpp>
 #include <maximin/tabular/belief_game.hpp>
 #include <maximin/tabular/optimal_attack.hpp>
 #include <maximin/tabular/policy_iteration.hpp>
@@ -60,6 +63,22 @@ double loss_of_the_sharper_belief(const Model<double>& model, const ExaminationO
   return ((on_ball.v - on_belief.v).maxCoeff() - errors) * (1 - model.mdp.discount()) / span;
 }
 
+Verdict verdict_on_settling(const Examination& found) {
+  if (found.fate == Fate::undetermined) return Verdict::undetermined;
+  return found.fate == Fate::cycles ? Verdict::violated : Verdict::holds;
+}
+
+/// Whether the maximin policy of Q* is worth more on the ball than on the belief somewhere. Values on the belief that
+/// are only bounded from below decide nothing.
+Verdict verdict_on_the_sharper_belief(const Certificate& c) {
+  if (!c.belief_game || !c.belief_game->exact) return Verdict::undetermined;
+  const Values<Rational> on_belief = start_values(*c.belief_game, make_perturbation(c.model));
+  for (State s = 0; s < on_belief.size(); ++s) {
+    if (c.test_time_robust[s] > on_belief[s]) return Verdict::violated;
+  }
+  return Verdict::holds;
+}
+
 }  // namespace
 
 const std::vector<Goal>& goals() {
@@ -86,6 +105,19 @@ double score(const Goal& goal, const Model<double>& model, const ExaminationOpti
   } catch (const std::runtime_error&) {
     return none;  // no valid model, or one too hard to decide
   }
+}
+
+Verdict proved(const Goal& goal, const Model<double>& model, const ExaminationOptions& options) {
+  ExaminationOptions exact = options;
+  exact.only.emplace();
+  if (goal.claim) exact.only->insert(*goal.claim);
+  if (goal.name == sharper_belief) exact.only->insert(ClaimId::f_belief);
+  Verdict on_belief = Verdict::undetermined;
+  const Examination found = examine_exactly(rationalise(model), {}, exact, [&](const Certificate& c) {
+    if (goal.name == sharper_belief) on_belief = verdict_on_the_sharper_belief(c);
+  });
+  if (goal.claim) return found.check(*goal.claim).verdict;
+  return goal.name == settling ? verdict_on_settling(found) : on_belief;
 }
 
 }  // namespace maximin

@@ -22,8 +22,7 @@ struct Goal {
 /// The claims, and
 ///   settling         score: the period of the policy pairs; above 1 pessimistic Q-iteration never settles
 ///   sharper-belief   score: how much more, of span(R)/(1-gamma), the maximin policy of Q* is worth on the ball than on
-///   the exact
-///                    belief in some state, each against its optimal attacker; above 0 a sharper belief hurts
+///                    the exact belief in some state, each against its optimal attacker; above 0 a sharper belief hurts
 const std::vector<Goal>& goals();
 
 /// The goal of that name, if there is one.
@@ -32,5 +31,9 @@ const Goal* find_goal(std::string_view name);
 /// The score of a model with points and eps; negative infinity where it has none: an assumption fails, a budget runs
 /// out. Rounding never lifts a score above its threshold: certified errors are taken off.
 double score(const Goal& goal, const Model<double>& model, const ExaminationOptions& options);
+
+/// What exact arithmetic says of the goal on the model in the decimals that its numbers stand for: `violated` where
+/// what is hunted is there, e.g. pessimistic Q-iteration never settles, `holds` where it is not.
+Verdict proved(const Goal& goal, const Model<double>& model, const ExaminationOptions& options);
 
 }  // namespace maximin

@@ -99,7 +99,7 @@ std::string caveats(const CampaignSummary& s, long asked) {
   return text;
 }
 
-std::string verdict(const CampaignSummary& s, long asked, const Replay& replay, bool exact) {
+std::string verdict(const CampaignSummary& s, long asked, const Replay& replay, bool exact, const std::string& doubt) {
   const std::string rest = caveats(s, asked);
   if (s.trials == 0) return verdict_box("warn", {"Nothing was checked: there is no trial.", rest});
   if (s.violations > 0) {
@@ -118,8 +118,8 @@ std::string verdict(const CampaignSummary& s, long asked, const Replay& replay, 
          rest});
   }
   const bool clean = outcome(s, s.trials >= asked) == Outcome::holds;
-  return verdict_box(clean ? "" : "warn",
-                     {fmt::format("No violation on {}.", counted(s.trials, "random model", "random models")),
+  return verdict_box(clean && doubt.empty() ? "" : "warn",
+                     {doubt, fmt::format("No violation on {}.", counted(s.trials, "random model", "random models")),
                       informative_sentence(s) + " " + upper_limit_sentence(s, exact), rest});
 }
 
@@ -244,7 +244,8 @@ std::string html_report(const Json& configuration, const Records& records, const
                                                                       : count(summary.trials) + " random models");
   std::string body = fmt::format("<h1>{}</h1>\n<p class=\"sub\">A campaign of verify_bound; {}.</p>\n", escape(title),
                                  reading_of(configuration));
-  body += verdict(summary, asked_trials(configuration, summary), replay, configuration.value("arith", "") == "exact");
+  body +=
+      verdict(summary, asked_trials(configuration, summary), replay, is_exact(configuration), doubt_of(configuration));
   body += campaign_tiles(summary);
   body += violations_section(records, summary, replay);
   body += claims_section(summary, replay);

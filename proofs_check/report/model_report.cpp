@@ -37,7 +37,7 @@ std::string informative_sentence(const Examination& e) {
   return fmt::format("Informative, being below the trivial γ span(R)/(1-γ) = {}: {}.", number(e.trivial), telling);
 }
 
-std::string verdict(const Examination& e, bool exact) {
+std::string verdict(const Examination& e, bool exact, const std::string& doubt) {
   const auto with = [&](Verdict v) { return names_where([&](const Claim& c) { return e.check(c.id).verdict == v; }); };
   if (e.any(Verdict::violated)) {
     return verdict_box("bad", {"Violated on this model: " + with(Verdict::violated) + ".", informative_sentence(e)});
@@ -53,11 +53,12 @@ std::string verdict(const Examination& e, bool exact) {
   }
   const long n = std::count_if(e.checks.begin(), e.checks.end(), checked);
   if (n == 0) return verdict_box("warn", {"Nothing was checked on this model."});
-  return verdict_box("",
-                     {n == 1 ? "The claim holds on this model." : fmt::format("All {} claims hold on this model.", n),
-                      informative_sentence(e),
-                      exact ? "Proved in exact arithmetic, for this model alone."
-                            : "Checked in floating point with certified numerical error; no proof for other models."});
+  return verdict_box(
+      doubt.empty() ? "" : "warn",
+      {doubt, n == 1 ? "The claim holds on this model." : fmt::format("All {} claims hold on this model.", n),
+       informative_sentence(e),
+       exact ? "Proved in exact arithmetic, for this model alone."
+             : "Checked in floating point with certified numerical error; no proof for other models."});
 }
 
 std::string claims_table(const Examination& e) {
@@ -225,7 +226,7 @@ std::string html_report(const Json& configuration, const TrialRecord& record, co
   std::string body =
       fmt::format("<h1>{}</h1>\n<p class=\"sub\">{} states, {} actions, γ = {}, eps = {}; {}.</p>\n", escape(title),
                   count(e.states), count(e.actions), number(e.discount), number(e.eps), reading_of(configuration));
-  body += verdict(e, configuration.value("arith", "") == "exact") + sides_section(e) + rounds_section(e, rounds) +
+  body += verdict(e, is_exact(configuration), doubt_of(configuration)) + sides_section(e) + rounds_section(e, rounds) +
           claims_table(e) + model_facts(e);
   return page(title, body + configuration_section(configuration));
 }

@@ -74,4 +74,17 @@ std::string reading_of(const nlohmann::ordered_json& configuration) {
   return paper ? "R_max read as the paper prints it, max(0, max R)" : "R_max read as max |R|, which the proof needs";
 }
 
+bool is_exact(const nlohmann::ordered_json& configuration) {
+  if (!configuration.is_object()) return false;
+  const auto arith = configuration.value("arith", nlohmann::ordered_json());
+  return arith == "exact" || arith == "certified";
+}
+
+std::string doubt_of(const nlohmann::ordered_json& configuration) {
+  const bool pedantic = configuration.is_object() && configuration.value("pedantic", false);
+  return pedantic && !is_exact(configuration)
+             ? "Undetermined: no violation, but what held held within rounding, not certified."
+             : "";
+}
+
 }  // namespace maximin::report

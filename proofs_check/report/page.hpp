@@ -36,4 +36,10 @@ std::string notation();
 /// Which reading of Assumption 2 the configuration asked for, as half a sentence.
 std::string reading_of(const nlohmann::ordered_json& configuration);
 
+/// Whether the configuration asked for exact arithmetic.
+bool is_exact(const nlohmann::ordered_json& configuration);
+
+/// What is to be said of claims that hold if the configuration is pedantic and the run was not exact; else nothing.
+std::string doubt_of(const nlohmann::ordered_json& configuration);
+
 }  // namespace maximin::report

@@ -3,7 +3,9 @@
 import glob
 import json
 import os
+import pty
 import re
+import select
 import signal
 import subprocess
 import tempfile
@@ -57,6 +59,9 @@ REFUSALS = [
     Refusal(["--gamma", "0.5:1"], 2, "--gamma"),
     Refusal(["--gamma", "nan"], 2, "--gamma"),
     Refusal(["--eps", "-1"], 2, "--eps"),
+    *[Refusal(["--eps", eps], 2, "--eps: %s, expected a finite number >= 0 or a fraction such as 1/3" % eps)
+      for eps in ("1/0", "1/3/5", "0.5/2", "nan", "1e999")],
+    Refusal(["--example", "grid", "--discount", "3/3"], 2, "--discount: 3/3, expected a finite number >= 0 and < 1"),
     Refusal(["--resume"], 2, "--trials-out"),
     Refusal(["--save-model", "m.json"], 2, "--replay"),
     *[Refusal(["--replay", "1", *given], 2, "%s: has no effect beside --replay" % given[0])
@@ -64,6 +69,7 @@ REFUSALS = [
     Refusal(["m.json"], 2, "m.json: $.epsilon: unknown name, expected 'eps'?", {"m.json": model(epsilon=1)}),
     Refusal(["certify", "--example", "cycling"], 2, "--output"),
     Refusal(["certify", "--example", "cycling", "-o", "there.json"], 2, "there.json exists", {"there.json": "kept"}),
+    Refusal(["certify", "--example", "cycling", "-o", "-", "--json"], 2, "--json: standard output takes the certificate"),
     Refusal(["certify", "m.json", "-o", "c.json"], 4, "Assumption 1", {"m.json": model(points=[[0], [0]], norm="l1", eps=1)}),
     *[Refusal([*given, *command], 2, "%s: has no effect before %s" % (given[0], command[0]))
       for given, command in ((["--reading", "paper"], ["certify", "--example", "one-sided", "-o", "z.json"]),
@@ -75,6 +81,8 @@ REFUSALS = [
     Refusal(["falsify", "--resume"], 2, "--trials-out"),
     Refusal(["falsify", "--states", "9:3"], 2, "LOW:HIGH"),
     Refusal(["--arith", "decimal"], 2, "exact"),
+    *[Refusal([*given, "--trials", "1"], 2, "--exact: given beside --arith double, expected one of the two")
+      for given in (["--exact", "--arith", "double"], ["--arith", "double", "--exact"])],
     Refusal(["m.json", "--model", "m.json"], 2, "given more than once", {"m.json": model()}),
     Refusal(["--trials", "1", "--trials-out", "no-such-folder/t.jsonl"], 2, "no-such-folder/t.jsonl"),
     Refusal(["--trials", "1", "--violation-dir", "no-such-folder"], 2,
@@ -221,6 +229,22 @@ def check_explain(program):
     return ["%s is not explained" % n for n in names if not re.search(r"^%s: " % n, text, re.M)]
 
 
+def check_theory_page(program):
+    """docs/theory.md names every claim as the program does, and theorems as Coq does; its prose is wrapped."""
+    root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+    with open(os.path.join(root, "docs", "theory.md")) as f:
+        page = f.read()
+    coq = "".join(open(file).read() for file in glob.glob(os.path.join(root, "proofs_check", "coq", "*.v")))
+    names = re.findall(r"^(\S+): ", run(program, ["--explain"]).stdout.decode(), re.M)
+    problems = ["%s is not on the page" % n for n in names if "`%s`" % n not in page]
+    theorems = re.findall(r"`([a-z]\w*_\w+)`", page)
+    problems += ["%s is not in Coq" % t for t in theorems if not re.search(r"\b(Theorem|Lemma|Example) %s\b" % t, coq)
+                 and t not in ("non_contraction", "verify_bound")]
+    lines = page.split("\n")
+    prose = [line for line in lines if not line.startswith(("    ", "|"))]
+    return problems + ["longer than 120: %s" % line for line in prose if len(line) > 120] + ([] if names and theorems else ["no names"])
+
+
 def check_replay(program):
     """A trial by itself gives the record of the campaign; its model, saved, gives the same verdict."""
     with tempfile.TemporaryDirectory() as folder:
@@ -347,15 +371,217 @@ def check_falsify(program):
         others = run(program, [*arguments, "--goal", "settling,sharper-belief,E"], cwd=folder)
         found = {g["goal"]: g for out in (printed, others) for g in json.loads(out.stdout)["goals"]}
         problems = ["%s: %s" % (n, found[n]) for n in ("theorem-1", "settling", "sharper-belief") if not found[n]["hit"]]
+        if any(found[n]["proved"] != "refuted, proved exactly" for n in ("theorem-1", "settling", "sharper-belief")):
+            problems.append("not proved: %s" % found)
         if printed.returncode != 1 or others.returncode != 0 or found["E"]["hit"]:
             problems.append("exit codes %d and %d, %s" % (printed.returncode, others.returncode, found["E"]))
         again = run(program, [found["theorem-1"]["file"], "--reading", "paper", "--claims", "theorem-1"], cwd=folder)
         return problems if again.returncode == 1 else problems + ["the model does not violate Theorem 1 when read"]
 
 
-CHECKS = [check_certify, check_tampered, check_exact_campaign, check_falsify, check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay,
-          check_replay_hint, check_vacuous, check_assumption, check_terminal, check_report, check_explain, check_sigkill,
-          check_sigint]
+def check_falsify_shares(program):
+    """A goal takes over a better model of another one; the last lines are a verdict for each goal."""
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = ["falsify", "--restarts", "1", "--states", "2:3", "--seed", "2", "--steps", "20", "--seconds", "100", "--quiet"]
+        alone = {}
+        for goal in ("theorem-1", "E"):
+            out = run(program, [*arguments, "--goal", goal, "--json"], cwd=folder).stdout
+            alone[goal] = json.loads(out)["goals"][0]
+        both = json.loads(run(program, [*arguments, "--goal", "theorem-1,E", "--json"], cwd=folder).stdout)["goals"]
+        text = run(program, [*arguments, "--goal", "theorem-1,E"], cwd=folder).stdout.decode()
+        problems = [] if [g["found_for"] for g in both] == ["E", "E"] else ["nothing was taken over: %s" % both]
+        for g in both:
+            if g["score"] < alone[g["goal"]]["score"] or (g["found_for"] != g["goal"]) != (g["score"] > alone[g["goal"]]["score"]):
+                problems.append("%s: %s, alone %s" % (g["goal"], g, alone[g["goal"]]))
+        last = text.rstrip("\n").split("\n")[-2:]
+        if [line.split(" ")[0] for line in last] != ["theorem-1", "E"] or any("not refuted in 1 restart;" not in line for line in last):
+            problems.append("last lines %r" % last)
+        return problems
+
+
+def check_huge(program):
+    """Numbers beyond floating point: certify and --exact agree, and floating point refuses them."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "huge.json"), "w") as f:
+            f.write(model(rewards=[["0"], ["1e400"]], points=[[0], [1]], norm="l1", eps=1))
+        made = run(program, ["certify", "huge.json", "-o", "c.json"], cwd=folder)
+        exact = run(program, ["huge.json", "--exact"], cwd=folder)
+        rounded = run(program, ["huge.json"], cwd=folder)
+        ok = (made.returncode, exact.returncode, rounded.returncode) == (0, 0, 2)
+        says = b".00000e+400" in made.stdout and b"inf: beyond floating point" in exact.stdout
+        return [] if ok and says else ["%r" % [made, exact, rounded]]
+
+
+def check_notes_once(program):
+    """A model read for exact work is read once: what is assumed of it is told once, by --exact as by certify."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "m.json"), "w") as f:
+            f.write(model(notes=["told once"]))
+        results = [run(program, a, cwd=folder) for a in (["m.json"], ["m.json", "--exact"], ["certify", "m.json", "-o", "c.json"])]
+        problems = []
+        for result in results:
+            if result.stderr.count(b"told once") != 1 or result.stderr.count(b"says nothing of distances") != 1:
+                problems.append("standard error %r" % result.stderr)
+        return problems
+
+
+def check_exact_legend(program):
+    """An exact table says which instance it shows; one in floating point shows the largest ratio and says no such thing."""
+    exact = run(program, ["--example", "cycling", "--exact"]).stdout
+    floating = run(program, ["--example", "cycling"]).stdout
+    says = b"least right - left" in exact and b"left is an upper bound for all rounds of one phase" in exact
+    return [] if says and b"right - left" not in floating else ["%r" % exact]
+
+
+def check_left_out(program):
+    """Claims that a certificate says nothing of are named."""
+    with tempfile.TemporaryDirectory() as folder:
+        certified(program, folder, "--example", "one-sided", "--claims", "E,lemma-2")
+        some = run(program, ["check", "c.json"], cwd=folder).stdout
+        listed = json.loads(run(program, ["check", "c.json", "--json"], cwd=folder).stdout)["certificates"][0]["left_out"]
+        certified(program, folder, "--example", "one-sided")
+        every = run(program, ["check", "c.json"], cwd=folder).stdout
+        line = b"not in this certificate: lemma-1, lemma-1-iterates, lemma-3, theorem-1, A, B, C, D, F\n"
+        ok = line in some and len(listed) == 9 and b"not in this certificate" not in every
+        return [] if ok else ["%r, %r, %r" % (some, listed, every)]
+
+
+def check_goes_on(program):
+    """A bad file does not keep the others from being checked, and the exit code is that of the worst."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        certified(program, folder, "--example", "one-sided", "--reading", "paper")
+        os.rename(os.path.join(folder, "c.json"), os.path.join(folder, "violated.json"))
+        certified(program, folder, "--example", "one-sided")
+        with open(os.path.join(folder, "bad.json"), "w") as f:
+            f.write("{")
+        for files, code in ((["bad.json", "violated.json", "c.json"], 2), (["c.json", "violated.json"], 1), (["c.json"], 0)):
+            text = run(program, ["check", *files], cwd=folder)
+            listed = json.loads(run(program, ["check", *files, "--json"], cwd=folder).stdout)["certificates"]
+            codes = {"bad.json": 2, "violated.json": 1, "c.json": 0}
+            if text.returncode != code or text.stdout.count(b"a valid certificate") != len(files) - ("bad.json" in files):
+                problems.append("%s: exit code %d, %r" % (files, text.returncode, text.stdout))
+            if text.stderr.count(b"\n") != ("bad.json" in files) or [c["exit_code"] for c in listed] != [codes[f] for f in files]:
+                problems.append("%s: %r, %s" % (files, text.stderr, listed))
+    return problems
+
+
+def check_pipe(program):
+    """certify -o - writes the certificate to standard output and nothing else; check - reads it from standard input."""
+    with tempfile.TemporaryDirectory() as folder:
+        certificate = certified(program, folder, "--example", "one-sided", "--reading", "paper")[2]
+        piped = run(program, ["certify", "--example", "one-sided", "--reading", "paper", "-o", "-"], cwd=folder)
+        checked = run(program, ["check", "-"], cwd=folder, input=piped.stdout)
+        tampered = run(program, ["check", "-"], cwd=folder, input=piped.stdout.replace(b'"right":"6"', b'"right":"7"'))
+        ok = json.loads(piped.stdout) == certificate and os.listdir(folder) == ["c.json"]
+        empty = run(program, ["check", "-"], cwd=folder, input=b"")
+        codes = [r.returncode for r in (piped, checked, tampered, empty)]
+        return [] if ok and codes == [1, 1, 2, 2] else ["exit codes %s, %r, %r" % (codes, piped.stderr, tampered.stderr)]
+
+
+def check_pedantic(program):
+    """What holds in floating point alone is undetermined; what is proved or violated stays; trials files are the same."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        def claims(out):
+            return {c["verdict"] for c in json.loads(out)["record"]["claims"].values()}
+        for arguments, code, verdicts in (
+                ([], 3, {"undetermined"}), (["--exact"], 0, {"holds"}), (["--reading", "paper"], 1, {"undetermined", "violated"})):
+            given = ["--example", "one-sided", "--pedantic", *arguments]
+            text, listed = run(program, given, cwd=folder), run(program, [*given, "--json"], cwd=folder)
+            if (text.returncode, listed.returncode) != (code, code) or claims(listed.stdout) != verdicts:
+                problems.append("%s: exit codes %d, %d, %s" % (arguments, text.returncode, listed.returncode, claims(listed.stdout)))
+            if (b"held within rounding, not certified" in text.stdout) != (code == 3):
+                problems.append("%s: %r" % (arguments, text.stdout))
+        for name, more, code in (("plain", [], 0), ("pedantic", ["--pedantic"], 3), ("exact", ["--pedantic", "--exact", "--states", "3:5"], 0)):
+            result = campaign(program, folder, "--family", "informative", *more, "--trials-out", name + ".jsonl", "--report", "r.html")
+            doubts = b"held within rounding, not certified"
+            if result.returncode != code or (doubts in result.stdout) != (code == 3) or (doubts in read(folder, "r.html")) != (code == 3):
+                problems.append("%s: exit code %d, %r" % (name, result.returncode, result.stdout))
+        if read(folder, "plain.jsonl") != read(folder, "pedantic.jsonl"):
+            problems.append("--pedantic changes the trials file")
+    return problems
+
+
+def check_fractions(program):
+    """--eps 1/3 and --discount 1/3 are exact in exact work, and the nearest double in floating point."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "m.json"), "w") as f:
+            f.write(model(points=[[0], ["1/3"]], norm="l1"))
+        exact = ["m.json", "--eps", "1/3", "--discount", "1/3"]
+        certificate = certified(program, folder, *exact)[2]["model"]
+        if (certificate["eps"], certificate["discount"]) != ("1/3", "1/3"):
+            problems.append("the certificate has eps %s, discount %s" % (certificate["eps"], certificate["discount"]))
+        for eps, ball in (("1/3", 2), ("0.3333333333333333", 1)):
+            found = json.loads(run(program, ["m.json", "--eps", eps, "--exact", "--json"], cwd=folder).stdout)["record"]
+            if found["largest_ball"] != ball:
+                problems.append("--eps %s --exact: largest ball %d" % (eps, found["largest_ball"]))
+        rounded = json.loads(run(program, [*exact, "--json"], cwd=folder).stdout)["record"]
+        if (rounded["eps"], rounded["discount"]) != (1 / 3, 1 / 3):
+            problems.append("in floating point: %s" % rounded)
+    return problems
+
+
+def check_killed_certificates(program):
+    """A kill leaves whole certificates and partial files, if any, named so; the resumed run removes these, and only these."""
+    with tempfile.TemporaryDirectory() as folder:
+        trials = 150
+        arguments = ["--exact", "--trials", str(trials), "--states", "3:6", "--quiet", "--threads", "2", "--trials-out", "t.jsonl",
+                     "--resume", "--certificates", "c"]
+        os.mkdir(os.path.join(folder, "c"))
+        process = subprocess.Popen([program, *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        deadline = time.time() + 60
+        while len(os.listdir(os.path.join(folder, "c"))) < 20 and time.time() < deadline:
+            time.sleep(0.001)
+        process.kill()
+        process.communicate(timeout=120)
+        left = [f for f in os.listdir(os.path.join(folder, "c")) if not f.endswith(".json")]
+        # Where the kill came between two files, one as it would have left.
+        for name in ("trial-3.json.Ab3dEf.partial", "kept.partial"):
+            with open(os.path.join(folder, "c", name), "w") as f:
+                f.write("{")
+        resumed = run(program, arguments, cwd=folder)
+        problems = ["left %s" % f for f in left if not re.fullmatch(r"trial-\d+\.json\.\w{6}\.partial", f)]
+        files = sorted(os.listdir(os.path.join(folder, "c")))
+        if resumed.returncode not in (0, 3) or files != sorted(["kept.partial"] + ["trial-%d.json" % k for k in range(trials)]):
+            problems.append("exit code %d, files %s, %r" % (resumed.returncode, files, resumed.stderr))
+        checked = run(program, ["check", *(f for f in files if f.endswith(".json"))], cwd=os.path.join(folder, "c"))
+        return problems if checked.returncode in (0, 3) else problems + ["check: %r" % checked.stderr[:300]]
+
+
+def check_progress(program):
+    """Exact work that takes long says on a terminal what it does and for how long, and nothing where there is none."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        for command in (["certify", "--example", "gridworld", "-o", "c.json"], ["--example", "gridworld", "--exact"]):
+            for quiet in ([], ["--quiet"]):
+                terminal, stderr = pty.openpty()
+                process = subprocess.Popen([program, *command, *quiet], cwd=folder, stdout=subprocess.DEVNULL, stderr=stderr,
+                                           env={**os.environ, "TERM": "xterm"})
+                os.close(stderr)
+                shown, deadline = b"", time.time() + (3 if quiet else 30)
+                while not re.search(rb"so far.*so far", shown, re.S) and time.time() < deadline:
+                    if select.select([terminal], [], [], 0.1)[0]:
+                        shown += os.read(terminal, 1000)
+                process.kill()
+                process.wait()
+                os.close(terminal)
+                if bool(shown) == bool(quiet) or not quiet and not re.search(rb"(optimal values|round \d+), \d+ s so far", shown):
+                    problems.append("%s: %r" % (command + quiet, shown))
+            process = subprocess.Popen([program, *command], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            time.sleep(2)
+            process.kill()
+            if process.communicate()[1]:
+                problems.append("%s: progress where there is no terminal" % command)
+    return problems
+
+
+CHECKS = [check_default_family, check_threads, check_resume, check_violation, check_violations_kept, check_replay_hint,
+          check_explain, check_theory_page, check_replay, check_vacuous, check_assumption, check_terminal,
+          check_report, check_sigkill, check_sigint, check_certify, check_tampered, check_exact_campaign,
+          check_falsify, check_falsify_shares, check_huge, check_notes_once, check_exact_legend, check_left_out,
+          check_goes_on, check_pipe, check_pedantic, check_fractions, check_killed_certificates, check_progress]
 
 
 if __name__ == "__main__":

@@ -139,9 +139,11 @@ class ModelAssembly {
       }
     }
     if (repaired_ > 0) {
-      notes.push_back(fmt::format("{} of {} rows summed to 1 only within {}; they were scaled to sum to 1", repaired_,
+      const auto defect = static_cast<double>(largest_defect_);
+      notes.push_back(fmt::format("{} of {} rows {}; they were scaled to sum to 1", repaired_,
                                   static_cast<std::size_t>(states_) * static_cast<std::size_t>(actions_),
-                                  fmt::format("{:.2g}", static_cast<double>(largest_defect_))));
+                                  defect > 0 ? fmt::format("summed to 1 only within {:.2g}", defect)
+                                             : "missed a sum of 1 by less than any double shows"));
     }
     return finish(std::move(builder));
   }

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <string>
 
+#include <maximin/theory/rational.hpp>
+
 #include "model_file_testing.hpp"
 
 namespace maximin {
@@ -88,6 +90,24 @@ TEST(MaximinJson, ScalesRowsThatMissOneBySomethingSmallAndSaysSo) {
   EXPECT_NEAR(model.mdp.successors(0, 0)[1].probability, 2.0 / 3.0, 1e-15);
   EXPECT_EQ(model.notes,
             std::vector<std::string>{"1 of 2 rows summed to 1 only within 1e-10; they were scaled to sum to 1"});
+}
+
+TEST(MaximinJson, ScalesEveryRowThatMissesOneExactlyInExactArithmetic) {
+  const auto read_row = [](const std::string& p, const std::string& q) {
+    return read_maximin_json<Rational>(
+        R"({"format":"maximin-mdp","version":1,"states":2,"actions":1,"discount":0,"rewards":[[0],[0]],
+            "transitions":[[0,0,0,")" +
+            p + R"("],[0,0,1,")" + q + R"("],[1,0,1,1]]})",
+        "m.json");
+  };
+  EXPECT_TRUE(read_row("1/3", "2/3").notes.empty());
+  const Model<Rational> near = read_row("0.3333333333333333", "0.6666666666666666");
+  EXPECT_EQ(near.mdp.successors(0, 0)[0].probability, Rational(1, 3));
+  EXPECT_EQ(near.notes,
+            std::vector<std::string>{"1 of 2 rows summed to 1 only within 1e-16; they were scaled to sum to 1"});
+  EXPECT_EQ(read_row("1", "1e-400").notes,
+            std::vector<std::string>{"1 of 2 rows missed a sum of 1 by less than any double shows; they were scaled to "
+                                     "sum to 1"});
 }
 
 TEST(MaximinJson, LetsTheCallerChooseTheDiscount) {

@@ -41,6 +41,17 @@ TEST(Report, SaysWhatIsProved) {
   EXPECT_EQ(report.claims[4].verdict, "violated");
   EXPECT_EQ(report.claims[4].left, "10");
   EXPECT_EQ(report.claims[4].right, "6");
+  EXPECT_EQ(report.worst(), "violated");
+  EXPECT_TRUE(report.left_out.empty());
+}
+
+TEST(Report, TellsTheWorstVerdictAndWhatIsLeftOut) {
+  EXPECT_EQ(checker::check(sample_certificates().at("cycle").dump()).worst(), "holds");
+  EXPECT_EQ(checker::check(sample_certificates().at("undecided").dump()).worst(), "undetermined");
+  json some = sample_certificates().at("one_sided_paper");
+  some["claims"] = json::array({some["claims"][4], some["claims"][9]});
+  EXPECT_EQ(checker::check(some.dump()).left_out,
+            (std::vector<std::string>{"lemma-1", "lemma-1-iterates", "lemma-2", "lemma-3", "A", "B", "C", "D", "F"}));
 }
 
 /// A certificate with one place changed, and how the line begins that refuses it.

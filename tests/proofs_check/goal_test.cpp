@@ -1,0 +1,36 @@
+#include <maximin/proofs_check/falsify/goal.hpp>
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include <maximin/models/builtin_models.hpp>
+
+namespace maximin {
+namespace {
+
+Verdict proved_on(const char* goal, const char* model, Reading reading = Reading::corrected) {
+  ExaminationOptions options;
+  options.reading = reading;
+  return proved(*find_goal(goal), builtin_model(model), options);
+}
+
+TEST(Goal, IsProvedExactlyEitherWay) {
+  EXPECT_EQ(proved_on("settling", "cycling"), Verdict::violated);
+  EXPECT_EQ(proved_on("settling", "one-sided"), Verdict::holds);
+  EXPECT_EQ(proved_on("theorem-1", "one-sided", Reading::paper), Verdict::violated);
+  EXPECT_EQ(proved_on("theorem-1", "one-sided"), Verdict::holds);
+  EXPECT_EQ(proved_on("sharper-belief", "one-sided"), Verdict::holds) << "violated: by the search, in the CLI test";
+}
+
+TEST(Goal, IsUndeterminedWhereABudgetRunsOut) {
+  ExaminationOptions options;
+  options.max_iterations = 1;
+  options.max_belief_positions = 1;
+  for (const char* goal : {"settling", "theorem-1", "sharper-belief"}) {
+    EXPECT_EQ(proved(*find_goal(goal), builtin_model("cycling"), options), Verdict::undetermined) << goal;
+  }
+}
+
+}  // namespace
+}  // namespace maximin
