@@ -28,7 +28,7 @@ json matrix(const char* distances) {
 Model read(const json& model) {
   static const Limits limits;
   const json parsed = json::parse(model.dump());
-  return read_model(Node(parsed, "$.model", limits));
+  return read_model(Node(parsed, "$.model", limits), limits.states);
 }
 
 std::string refusal(const json& model) {
@@ -65,17 +65,19 @@ TEST(Distances, UnderL2AreEnclosed) {
   json model = points("l2", "1");
   model["points"] = json::parse(R"([["0", "0"], ["1", "1"], ["3", "4"]])");
   const Model m = read(model);
-  EXPECT_LT(m.near_at(0, 1) * m.near_at(0, 1), 2);
-  EXPECT_GT(m.far_at(0, 1) * m.far_at(0, 1), 2);
-  EXPECT_EQ(m.far_at(0, 1) - m.near_at(0, 1), Rational(1, Integer(1) << 64));
-  EXPECT_EQ(m.near_at(0, 2), 5);
-  EXPECT_EQ(m.far_at(0, 2), 5);
+  const Rational near = m.metric.near(m.length(0, 1)), far = m.metric.far(m.length(0, 1));
+  EXPECT_LT(near * near, 2);
+  EXPECT_GT(far * far, 2);
+  EXPECT_EQ(far - near, Rational(1, Integer(1) << 64));
+  EXPECT_EQ(m.metric.near(m.length(0, 2)), 5);
+  EXPECT_EQ(m.metric.far(m.length(0, 2)), 5);
 }
 
 TEST(Distances, NullIsInfinite) {
   const Model m = read(matrix(R"([["0", "1", null], ["1", "0", null], [null, null, "0"]])"));
   EXPECT_EQ(m.balls, (std::vector<Indices>{{0, 1}, {0, 1}, {2}}));
-  EXPECT_FALSE(m.finite[2]);
+  EXPECT_EQ(m.length(0, 2), -1);
+  EXPECT_EQ(m.length(0, 1), m.metric.unit);
 }
 
 TEST(Distances, AreAMetric) {

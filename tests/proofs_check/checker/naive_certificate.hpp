@@ -478,15 +478,15 @@ class NaiveCertificate {
       }
     }
   }
-  void each(const std::string& claim, const Json& at, const Table& x, const Table& y, bool absolute, const Q& more,
-            const Q& right, bool proves) {
+  void each(const std::string& claim, const Json& at, const Table& x, const Table& y, bool absolute, const Q& right,
+            bool proves) {
     for (int s = 0; s < n_; ++s) {
       for (int a = 0; a < m_; ++a) {
         Json place = at;
         place["states"] = {s};
         place["action"] = a;
         const Q difference = x[s][a] - y[s][a];
-        instances_[claim].push_back({place, (absolute ? magnitude(difference) : difference) + more, right, proves});
+        instances_[claim].push_back({place, absolute ? magnitude(difference) : difference, right, proves});
       }
     }
   }
@@ -527,13 +527,13 @@ class NaiveCertificate {
         lipschitz("lemma-1", n, robust, 0, of_print_);
       }
       lipschitz("lemma-1-iterates", n, q_[n], 0, of_rep_);
-      each("lemma-2", {{"n", n}}, greedy_backup(q_[n]), q_[n + 1], true, 0, e2 * l_print_, true);
+      each("lemma-2", {{"n", n}}, greedy_backup(q_[n]), q_[n + 1], true, e2 * l_print_, true);
       Values image;
       for (int s = 0; s < n_; ++s) image.push_back(q_star_[s][pair["policy"][pair["attack"][s].get<int>()].get<int>()]);
       instances_["lemma-3"].push_back(
           {{{"n", n}}, distance(q_[n + 1], back(image)), g_ * distance(q_[n], q_star_), true});
-      each("C", {{"n", n}}, q_star_, robust, false, 0, finite_n(n, e2 * l_rep_), true);
-      each("D", {{"n", n}}, q_star_, robust, false, 0, finite_n(n, e2 * l_tv_), true);
+      each("C", {{"n", n}}, q_star_, robust, false, finite_n(n, e2 * l_rep_), true);
+      each("D", {{"n", n}}, q_star_, robust, false, finite_n(n, e2 * l_tv_), true);
     }
     const int k = static_cast<int>(orbit_.size());
     std::set<std::string> unknown;
@@ -544,19 +544,29 @@ class NaiveCertificate {
       if (fixed_[j]) lipschitz("lemma-1", rounds + j, *fixed_[j], 0, of_print_);
       lipschitz("lemma-1-iterates", rounds + j, orbit_[j], 2 * g_ * delta_, of_rep_);
       if (j == 0) lipschitz("lemma-1-iterates", rounds, q_.back(), 0, of_rep_);
-      each("lemma-2", at, greedy_backup(orbit_[j]), orbit_[(j + 1) % k], true, 2 * g_ * delta_, e2 * l_print_,
-           g_ * delta_ == 0);
-      each("theorem-1", at, q_star_, fixed_[j] ? *fixed_[j] : low_[j], false, 0,
-           (1 + g_) / (rest * rest) * e2 * l_print_, fixed_[j].has_value());
-      each("A", at, q_star_, low_[j], false, 0, (1 + g_) / (rest * rest) * e2 * l_sound_, low_proves_[j]);
-      each("B", at, q_star_, low_[j], false, 0, e2 * l_sound_ / (rest * rest), low_proves_[j]);
+      const Table greedy = greedy_backup(orbit_[j]), &next = orbit_[(j + 1) % k];
+      for (int s = 0; s < n_; ++s) {
+        for (int a = 0; a < m_; ++a) {
+          Q misled = 0;
+          for (int t = 0; t < n_; ++t) misled += ball_[t].size() > 1 ? p_[s][a][t] : Q(0);
+          const Q added = 2 * g_ * delta_ * misled;
+          instances_["lemma-2"].push_back({{{"n", rounds + j}, {"states", {s}}, {"action", a}},
+                                           magnitude(greedy[s][a] - next[s][a]) + added,
+                                           e2 * l_print_,
+                                           added == 0});
+        }
+      }
+      each("theorem-1", at, q_star_, fixed_[j] ? *fixed_[j] : low_[j], false, (1 + g_) / (rest * rest) * e2 * l_print_,
+           fixed_[j].has_value());
+      each("A", at, q_star_, low_[j], false, (1 + g_) / (rest * rest) * e2 * l_sound_, low_proves_[j]);
+      each("B", at, q_star_, low_[j], false, e2 * l_sound_ / (rest * rest), low_proves_[j]);
       for (const auto& [claim, delta] : {std::pair<std::string, Q>("C", e2 * l_rep_), {"D", e2 * l_tv_}}) {
         const Q at_last = (g_ * delta / rest + delta) / rest;
-        each(claim, at, q_star_, low_[j], false, 0, std::min(finite_n(rounds + j, delta), at_last), low_proves_[j]);
+        each(claim, at, q_star_, low_[j], false, std::min(finite_n(rounds + j, delta), at_last), low_proves_[j]);
       }
     }
-    each("E", Json::object(), q_star_, back(numbers(c_["test_time"]["robust"])), false, 0,
-         e2 * constant_["l_star"] / rest, true);
+    each("E", Json::object(), q_star_, back(numbers(c_["test_time"]["robust"])), false, e2 * constant_["l_star"] / rest,
+         true);
     for (int s = 0; s < n_ && !c_["belief_game"].is_null(); ++s) {
       instances_["F"].push_back({{{"states", {s}}},
                                  v_star_[s] - belief_worst_[s],
