@@ -95,33 +95,28 @@ BeliefGame check_belief_game(const Node& node, const Model& m, const Enclosure& 
   BeliefGame result;
   result.exact = !bounds && node.member("exact").boolean();
 
-  // A position is reached for certain where the agent had no other choice on the way; it is visited again once it is.
-  enum Reached { no, perhaps, certain };
-  std::vector<Reached> reached(game.size(), no);
+  std::vector<bool> reached(game.size());
   Indices to_visit;
   // The least over t in B(s) of the values of the positions that t leads to, all of which are marked as reached.
-  const auto worst_of = [&](std::size_t s, const Indices* belief, Reached how) -> const Integer& {
+  const auto worst_of = [&](std::size_t s, const Indices* belief) -> const Integer& {
     const Integer* worst = nullptr;
     for (const std::size_t t : m.balls[s]) {
       const std::size_t i = game.meet(s, t, belief);
-      if (reached[i] < how) {
-        reached[i] = how;
-        to_visit.push_back(i);
-      }
+      if (!reached[i]) to_visit.push_back(i);
+      reached[i] = true;
       if (worst == nullptr || values.top[i] < *worst) worst = &values.top[i];
     }
     return *worst;
   };
   result.worst.bottom = values.bottom;
-  for (std::size_t s = 0; s < m.states; ++s) result.worst.top.push_back(worst_of(s, nullptr, certain));
+  for (std::size_t s = 0; s < m.states; ++s) result.worst.top.push_back(worst_of(s, nullptr));
   while (!to_visit.empty()) {
     const std::size_t i = to_visit.back(), s = game[i].first;
     to_visit.pop_back();
     for (const std::size_t a : game.actions(i)) {
       const Indices successors = game.successors(i, a);
-      const Reached how = game.actions(i).size() == 1 ? reached[i] : perhaps;
       Integer sum;
-      for (const auto& [next, p] : m.rows[m.at(s, a)]) sum += p * worst_of(next, &successors, how);
+      for (const auto& [next, p] : m.rows[m.at(s, a)]) sum += p * worst_of(next, &successors);
       const Rational follows = m.rewards[m.at(s, a)] + m.discount * Rational(sum) / Rational(m.whole * values.bottom);
       const Rational value = values[i];
       if (result.exact ? value == follows : value <= follows) continue;
@@ -129,7 +124,7 @@ BeliefGame check_belief_game(const Node& node, const Model& m, const Enclosure& 
              shown(value) + ", expected " + (result.exact ? "" : "at most ") + shown(follows));
     }
   }
-  const auto unreached = std::find(reached.begin(), reached.end(), no);
+  const auto unreached = std::find(reached.begin(), reached.end(), false);
   if (unreached != reached.end()) {
     refuse(item(node.path() + ".positions", static_cast<std::size_t>(unreached - reached.begin())),
            "not reached, expected only positions that are");
@@ -137,7 +132,6 @@ BeliefGame check_belief_game(const Node& node, const Model& m, const Enclosure& 
   std::vector<Integer> lengths(m.states);
   for (std::size_t i = 0; i < game.size(); ++i) {
     if (i == 0 || game[i].first != game[i - 1].first) m.metric.from(game[i].first, lengths);
-    if (reached[i] != certain) continue;
     Integer longest;
     for (const std::size_t member : game[i].second) longest = std::max(longest, lengths[member]);
     result.reach = std::max(result.reach, m.metric.near(longest));
