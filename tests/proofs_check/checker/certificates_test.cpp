@@ -1,3 +1,4 @@
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -59,7 +60,7 @@ class OneUntruth : public ::testing::TestWithParam<Untruth> {};
 
 TEST_P(OneUntruth, IsRefusedAtItsPlace) {
   json certificate = sample_certificates().at(GetParam().certificate);
-  certificate.at(json::json_pointer(GetParam().place)) = GetParam().value;
+  certificate[json::json_pointer(GetParam().place)] = GetParam().value;
   const std::string line = refusal(certificate.dump()), start = GetParam().line;
   EXPECT_EQ(line.substr(0, start.size()), start) << line;
 }
@@ -152,6 +153,165 @@ INSTANTIATE_TEST_SUITE_P(
         Untruth{paper, "/claims/4/verdict", "undetermined", "$.claims[4]: \"at\" is no member of it"},
         Untruth{"plane_l2", "/claims/0/verdict", "violated",
                 "$.claims[0].verdict: violated, expected it never under l2"}));
+
+const char* const bounds = "bounds_one_sided";
+const char* const ties = "bounds_ties";  // where a box leaves several actions to choose from
+
+INSTANTIATE_TEST_SUITE_P(
+    ConstantsByBounds, OneUntruth,
+    ::testing::Values(
+        Untruth{bounds, "/constants/l_r/value", "2", "$.constants.l_r.value: 2, expected at most 1,"},
+        Untruth{bounds, "/constants/l_p/value", "2", "$.constants.l_p.value: 2, expected at most 1,"},
+        Untruth{bounds, "/constants/k/value", "2", "$.constants.k.value: 2, expected at most 1,"},
+        Untruth{bounds, "/constants/l_star/value", "22", "$.constants.l_star.value: 22, expected at most 21,"},
+        Untruth{ties, "/constants/l_star/value", "8195/4096", "$.constants.l_star.value: 8195/4096, expected at most"},
+        Untruth{bounds, "/constants/l_star/at", {1, 0, 0}, "$.constants.l_star.value: 21, expected at most -21,"},
+        Untruth{bounds, "/constants/l_r/value", "-1", "$.constants.l_r.value: -1, expected a number from 0 on"},
+        Untruth{bounds, "/constants/l_r/value", "0", "$.constants.l_r.at: expected null where the value is 0"},
+        Untruth{bounds, "/constants/l_r/at", nullptr, "$.constants.l_r.at: expected null where the value is 0"},
+        Untruth{bounds, "/constants/l_r/at", {1, 1, 0}, "$.constants.l_r.at: expected states that differ"},
+        Untruth{bounds, "/model/points/1", {"0"}, "$.constants.l_r.at: expected a finite distance above 0"},
+        Untruth{"bounds_islands",
+                "/constants/l_r",
+                {{"value", "1"}, {"at", {0, 1, 0}}},
+                "$.constants.l_r.at: expected a finite distance above 0"},
+        Untruth{bounds, "/constants/r_min", "-19", "$.constants.r_min: -19, expected -20"},
+        Untruth{bounds, "/constants/r_max", "1", "$.constants.r_max: 1, expected 0"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    ValuesByBounds, OneUntruth,
+    ::testing::Values(
+        Untruth{bounds, "/optimal/low/0", "1", "$.optimal.low[0]: 1, expected at most 1/2"},
+        Untruth{bounds, "/optimal/high/0", "-1", "$.optimal.high[0]: -1, expected at least -1/2"},
+        Untruth{bounds, "/bits", 100'001, "$.bits: 100001, expected an integer from 0 to 100000"},
+        Untruth{bounds, "/bits", 2, "$.limit.boxes[0].high[1]: -7925/4096, expected at least -7/4"},
+        Untruth{bounds, "/pairs", json::array(), "$.pairs: empty"},
+        Untruth{bounds, "/pairs/0/choices/0", {1}, "$.pairs[0].choices[0]: not the actions of round 0, expected {0}"},
+        Untruth{bounds, "/pairs/0/choices/0", json::array(), "$.pairs[0].choices[0]: not the actions of round 0"},
+        Untruth{
+            bounds, "/pairs/1/provoked/1", {0, 1}, "$.pairs[1].provoked[1]: not the actions of round 2, expected {1}"},
+        Untruth{
+            ties, "/pairs/1/provoked/2", {1}, "$.pairs[1].provoked[2]: not the actions of round 2, expected {0, 1}"},
+        Untruth{bounds, "/pairs/0/below/1", "-20", "$.pairs[0].below[1]: -20, expected at most -21"},
+        Untruth{bounds, "/pairs/0/above/1", "-22", "$.pairs[0].above[1]: -22, expected at least -21"},
+        Untruth{bounds, "/rounds/0", 1, "$.rounds[0]: a pair that skips pair 0"},
+        Untruth{bounds, "/rounds/2", 0, "$.pairs[0].choices[0]: not the actions of round 2, expected {1}"},
+        Untruth{bounds, "/rounds", {0, 0}, "$.claims[1].at.n: 6, expected an integer from 0 to 2"},
+        Untruth{bounds, "/test_time/below/0", "-19", "$.test_time.below[0]: -19, expected at most -20"},
+        Untruth{ties, "/test_time/below/0", "1/1024", "$.test_time.below[0]: 1/1024, expected at most 1/2048"},
+        Untruth{bounds, "/belief_game/values/0", "-19", "$.belief_game.values[0]: -19, expected at most -20"},
+        Untruth{ties, "/belief_game/values/0", "1/1024", "$.belief_game.values[0]: 1/1024, expected at most 0"},
+        Untruth{bounds, "/belief_game/reach", "2", "$.belief_game.reach: 2, expected 1"},
+        Untruth{ties, "/belief_game/positions/0/1", {0}, "$.belief_game.positions: none of state 0 and belief {0, 1}"},
+        Untruth{ties, "/model/metric", "discrete", "$.rounds[2]: the second pair of the same actions"},
+        Untruth{ties, "/model/metric", "steps", "$.model.metric: \"steps\", expected \"hops\" or \"discrete\""}));
+
+/// The values of a box that are near to those of round N-1 are held by it, the others by the backup of the box itself.
+INSTANTIATE_TEST_SUITE_P(
+    Boxes, OneUntruth,
+    ::testing::Values(
+        Untruth{bounds, "/limit/boxes/0/low/0", "-18", "$.limit.boxes[0].low[0]: -18, expected at most -75/4"},
+        Untruth{bounds, "/limit/boxes/0/high/0", "-20", "$.limit.boxes[0].high[0]: -20, expected at least -75/4"},
+        Untruth{bounds, "/limit/boxes/0/low/0", "-19", "$.limit.boxes[0].low[0]: -19, expected at most -20"},
+        Untruth{bounds, "/limit/boxes/0/high/2", "-36", "$.limit.boxes[0].high[0]: -76789/4096, expected at least -18"},
+        Untruth{bounds, "/limit/boxes/0/below/1", "-1", "$.limit.boxes[0].below[1]: -1, expected at most -3/2"},
+        Untruth{bounds, "/limit/boxes/0/above/1", "-3", "$.limit.boxes[0].above[1]: -3, expected at least -5/2"},
+        Untruth{ties, "/limit/boxes/0/below/0", "1/1024", "$.limit.boxes[0].below[0]: 1/1024, expected at most 1/2048"},
+        Untruth{ties, "/limit/boxes/0/above/0", "1", "$.limit.boxes[0].above[0]: 1, expected at least"},
+        Untruth{bounds, "/limit", {{"orbit", {1}}}, "$.limit.boxes: missing"},
+        Untruth{bounds, "/limit/boxes/0/fixed", nullptr, "$.limit.boxes[0]: \"fixed\" is no member"},
+        Untruth{"boxes_random_six", "/limit/boxes/1/low/0", "6", "$.limit.boxes[1].low[0]: 6, expected at most"},
+        Untruth{"boxes_random_six", "/limit/boxes/0/low/0", "6", "$.limit.boxes[0].low[0]: 6, expected at most"},
+        Untruth{"boxes_one_sided_paper", "/limit/boxes/0/low/0", "-19",
+                "$.limit.boxes[0].low[0]: -19, expected at most -315/16"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    ClaimsByBounds, OneUntruth,
+    ::testing::Values(
+        Untruth{bounds, "/claims/2/claim", "lemma-3", "$.claims[2].claim: \"lemma-3\", expected no entry of it"},
+        Untruth{bounds, "/claims/0/verdict", "violated", "$.claims[0].verdict: violated, expected it never by bounds"},
+        Untruth{bounds, "/claims/1/at/n", 0, "$.claims[1].at: no instance with these sides"},
+        Untruth{bounds, "/reading", "paper", "$.claims[0].verdict: holds, but the least right - left is -20"}));
+
+/// Each claim with both sides moved, so that it is the instance that is wrong.
+TEST(ClaimsByBounds, HaveTheSidesOfTheFormat) {
+  for (const char* name : {"bounds_one_sided", "bounds_ties", "bounds_plane_l2", "boxes_random_six"}) {
+    const json& original = sample_certificates().at(name);
+    for (std::size_t i = 0; i < original["claims"].size(); ++i) {
+      json certificate = original;
+      for (const char* side : {"left", "right"}) {
+        std::string& text = certificate["claims"][i][side].get_ref<std::string&>();
+        text = mpq_class(mpq_class(text) - 1).get_str();
+      }
+      const std::string line = refusal(certificate.dump()),
+                        start = "$.claims[" + std::to_string(i) + "].at: no instance";
+      EXPECT_EQ(line.substr(0, start.size()), start) << name << ": " << line;
+    }
+  }
+}
+
+TEST(PairsByBounds, AreGivenOnceAndInOrder) {
+  json certificate = sample_certificates().at(bounds);
+  certificate["pairs"].push_back(certificate["pairs"][1]);
+  EXPECT_EQ(refusal(certificate.dump()), "$.pairs[2]: in no round, expected only pairs that occur");
+  certificate["rounds"][3] = 2;
+  EXPECT_EQ(refusal(certificate.dump()), "$.rounds[3]: the second pair of the same actions, expected 1");
+}
+
+/// Of an exact certificate with boxes, its rounds prove violations, and its boxes never.
+TEST(Boxes, ProveNoViolation) {
+  json certificate = sample_certificates().at("boxes_one_sided_paper");
+  const json& violated = sample_certificates().at(paper)["claims"];
+  certificate["claims"] = json::array({violated[0]});
+  EXPECT_EQ(violated[0]["verdict"], "violated");
+  EXPECT_EQ(refusal(certificate.dump()), "");
+  certificate["claims"] = json::array({violated[4]});
+  EXPECT_EQ(refusal(certificate.dump()),
+            "$.claims[0].verdict: violated, expected undetermined: no instance decides it");
+}
+
+/// Any constants are safe where there are none: states that differ at distance 0.
+TEST(ConstantsByBounds, MayBe0) {
+  json certificate = sample_certificates().at(bounds);
+  certificate["model"]["points"][1][0] = "0";
+  for (const char* name : {"l_r", "l_p", "k", "l_star"})
+    certificate["constants"][name] = {{"value", "0"}, {"at", nullptr}};
+  certificate["belief_game"]["reach"] = "0";
+  certificate["claims"] = json::array({{{"claim", "A"}, {"verdict", "undetermined"}}});
+  EXPECT_EQ(refusal(certificate.dump()), "");
+}
+
+TEST(ClaimsByBounds, NeedTheLimitAndTheBeliefGame) {
+  for (const std::size_t claim : {0, 1, 2, 3, 4, 5, 6, 7, 9}) {
+    json certificate = sample_certificates().at(bounds);
+    certificate["limit"] = certificate["belief_game"] = nullptr;
+    certificate["claims"] = json::array({certificate["claims"][claim]});
+    if (claim < 9) certificate["claims"][0]["at"]["n"] = 0;
+    EXPECT_NE(refusal(certificate.dump()).find("$.claims[0].verdict: holds, expected undetermined: the "),
+              std::string::npos);
+  }
+}
+
+TEST(Limits, AreOfTheFormat) {
+  const std::string exact = sample_certificates().at(paper).dump(), enclosed = sample_certificates().at(bounds).dump();
+  checker::Limits limits;
+  limits.states = 2;
+  EXPECT_EQ(refusal(exact, limits), "$.model.states: 3, expected an integer from 1 to 2");
+  EXPECT_EQ(refusal(enclosed, limits), "");
+  limits = {};
+  limits.states_by_bounds = 2;
+  EXPECT_EQ(refusal(exact, limits), "");
+  EXPECT_EQ(refusal(enclosed, limits), "$.model.states: 3, expected an integer from 1 to 2");
+}
+
+TEST(Report, SaysWhatKindItIs) {
+  const auto report = [](const char* name) { return checker::check(sample_certificates().at(name).dump()); };
+  EXPECT_FALSE(report(paper).bounds || report(paper).boxes);
+  EXPECT_TRUE(report(bounds).bounds && report(bounds).boxes);
+  EXPECT_EQ(report("boxes_random_six").period, 2U);
+  EXPECT_TRUE(report("boxes_random_six").boxes && !report("boxes_random_six").bounds);
+  EXPECT_TRUE(report("bounds_undecided").bounds && !report("bounds_undecided").boxes);
+}
 
 TEST(Claims, AreLeftOutOrUndeterminedFreely) {
   json certificate = sample_certificates().at(paper);

@@ -95,6 +95,32 @@ TEST(Distances, AreAMetric) {
   expect_refused(R"([["0", "1"], ["1", "0", "1"], ["1", "1", "0"]])", "$.model.distances[0]: 2 items, expected 3");
 }
 
+/// 0 leads to 1 and 1 to 2, and 3 to itself alone.
+TEST(Distances, HopsAreStepsEitherWay) {
+  json model = points("l1", "1");
+  model.erase("points");
+  model.erase("norm");
+  model["states"] = 4;
+  model["rewards"] = json::parse(R"([["0"], ["0"], ["0"], ["0"]])");
+  model["transitions"] = json::parse(R"([[0, 0, 1, "1"], [1, 0, 1, "1/2"], [1, 0, 2, "1/2"], [2, 0, 2, "1"],
+                                         [3, 0, 3, "1"]])");
+  model["metric"] = "hops";
+  const Model hops = read(model);
+  EXPECT_EQ(hops.balls, (std::vector<Indices>{{0, 1}, {0, 1, 2}, {1, 2}, {3}}));
+  EXPECT_EQ(hops.length(2, 0), 2);
+  EXPECT_EQ(hops.length(2, 3), -1);
+  EXPECT_TRUE(hops.has_pairs);
+  model["metric"] = "discrete";
+  const Model discrete = read(model);
+  EXPECT_EQ(discrete.balls[2], (Indices{0, 1, 2, 3}));
+  EXPECT_EQ(discrete.length(2, 2), 0);
+  EXPECT_EQ(discrete.length(2, 3), 1);
+  model["eps"] = "99/100";
+  EXPECT_EQ(read(model).balls[2], Indices{2});
+  model["distances"] = json::array();
+  EXPECT_EQ(refusal(model), "$.model: \"distances\" is no member of it, expected none but those of the format");
+}
+
 TEST(Backup, IsThatOfTheFormat) {
   json model = points("l1", "0");
   model["discount"] = "9/10";
