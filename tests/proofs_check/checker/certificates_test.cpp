@@ -258,6 +258,45 @@ TEST(PairsByBounds, AreGivenOnceAndInOrder) {
   EXPECT_EQ(refusal(certificate.dump()), "$.rounds[3]: the second pair of the same actions, expected 1");
 }
 
+/// By hand: states at 0, 1 and 10 that all lead to the first, at a discount of 0; what the last pays is its value.
+json by_hand(const std::string& pay) {
+  json c = json::parse(R"({"format": "maximin-bounds", "version": 1, "reading": "corrected", "tie": "lowest", "bits": 0,
+    "model": {"format": "maximin-mdp", "version": 1, "states": 3, "actions": 1, "discount": "0", "eps": "0",
+              "points": [["0"], ["1"], ["10"]], "norm": "l1",
+              "transitions": [[0, 0, 0, "1"], [1, 0, 0, "1"], [2, 0, 0, "1"]]},
+    "rounds": [0, 0], "pairs": [{"choices": [[0], [0], [0]], "provoked": [[0], [0], [0]]}], "belief_game": null,
+    "constants": {"l_p": {"value": "0", "at": null}, "k": {"value": "0", "at": null}, "r_min": "0",
+                  "l_star": {"value": "0", "at": null}}})");
+  const json values{"0", "0", pay}, zero{{"value", "0"}, {"at", nullptr}};
+  c["model"]["rewards"] = {{"0"}, {"0"}, {pay}};
+  c["constants"]["r_max"] = pay;
+  c["constants"]["l_r"] = pay == "0" ? zero : json{{"value", "1/1000"}, {"at", {0, 2, 0}}};
+  c["optimal"] = {{"low", values}, {"high", values}};
+  c["test_time"]["below"] = c["pairs"][0]["below"] = c["pairs"][0]["above"] = values;
+  c["limit"]["boxes"] = json::array({{{"low", values}, {"high", values}, {"below", values}, {"above", values}}});
+  return c;
+}
+
+std::string refusal_of(json certificate, const char* claim, const char* left, const char* right, int n, int t) {
+  certificate["claims"] = json::array({{{"claim", claim}, {"verdict", "holds"}, {"left", left}, {"right", right}}});
+  certificate["claims"][0]["at"] = {{"n", n}, {"states", {0, t}}, {"action", 0}};
+  return refusal(certificate.dump());
+}
+
+TEST(PairsOfStates, ThatAreFarApartMayBeTheTightest) {
+  EXPECT_EQ(refusal_of(by_hand("5"), "lemma-1", "5", "5", 0, 2), "");
+  EXPECT_EQ(refusal_of(by_hand("5"), "lemma-1", "0", "1/1000", 0, 1),
+            "$.claims[0].left: 0 against right 1/1000, expected the instance of least right - left, which is 0");
+}
+
+TEST(PairsOfStates, AreThoseOfFirstRoundsAndOfIteratesAfterThe0th) {
+  const char* none = "$.claims[0].at: no instance with these sides, expected the one that they are the sides of";
+  EXPECT_EQ(refusal_of(by_hand("5"), "lemma-1", "5", "5", 1, 2), none);
+  EXPECT_EQ(refusal_of(by_hand("5"), "lemma-1", "5", "5", 2, 2), "");
+  EXPECT_EQ(refusal_of(by_hand("0"), "lemma-1-iterates", "0", "0", 1, 2), "");
+  EXPECT_EQ(refusal_of(by_hand("0"), "lemma-1-iterates", "0", "0", 0, 2), none);
+}
+
 /// Of an exact certificate with boxes, its rounds prove violations, and its boxes never.
 TEST(Boxes, ProveNoViolation) {
   json certificate = sample_certificates().at("boxes_one_sided_paper");
@@ -265,6 +304,11 @@ TEST(Boxes, ProveNoViolation) {
   certificate["claims"] = json::array({violated[0]});
   EXPECT_EQ(violated[0]["verdict"], "violated");
   EXPECT_EQ(refusal(certificate.dump()), "");
+  for (const std::size_t claim : {5, 6}) {
+    certificate["claims"] = json::array({sample_certificates().at("boxes_one_sided_paper")["claims"][claim]});
+    certificate["claims"][0]["verdict"] = "violated";
+    EXPECT_NE(refusal(certificate.dump()).find("no instance decides it"), std::string::npos);
+  }
   certificate["claims"] = json::array({violated[4]});
   EXPECT_EQ(refusal(certificate.dump()),
             "$.claims[0].verdict: violated, expected undetermined: no instance decides it");
