@@ -35,7 +35,8 @@ class Game {
   const Indices& actions(std::size_t i) const { return actions_[i]; }  ///< C(M): one where Q* is known
 
   /// The number of the position that `belief` narrowed to B(t) makes, of true state s. Everything is possible at first.
-  std::size_t meet(std::size_t s, std::size_t t, const Indices* belief) const {
+  /// Of a game that need not be complete it is size() where only a start would have to be listed.
+  std::size_t meet(std::size_t s, std::size_t t, const Indices* belief, bool complete) const {
     Position position{s, {}};
     if (belief == nullptr) {
       position.second = m_.balls[t];
@@ -46,6 +47,7 @@ class Game {
     }
     const auto found = numbers_.find(position);
     if (found != numbers_.end()) return found->second;
+    if (belief != nullptr && !complete) return size();
     std::string text;
     for (const std::size_t state : position.second) text += (text.empty() ? "" : ", ") + std::to_string(state);
     refuse(path_, "none of state " + std::to_string(s) + " and belief {" + text + "}, expected all that are reached");
@@ -91,9 +93,15 @@ BeliefGame check_belief_game(const Node& node, const Model& m, const Enclosure& 
   node.expect_members(names);
   const Game game(m, q_star, highest, node.member("positions"));
   const Node values_node = node.member("values"), reach = node.member("reach");
-  const Table values = values_node.table(game.size());
+  Table values = values_node.table(game.size());
   BeliefGame result;
   result.exact = !bounds && node.member("exact").boolean();
+  // Of what is not listed, no value is below r_min/(1-g): an entry more.
+  const Integer& least = *std::min_element(m.rewards.top.begin(), m.rewards.top.end());
+  const Rational of_unlisted = Table{{least}, m.rewards.bottom}[0] / (1 - m.discount);
+  Table more{{of_unlisted.get_num()}, of_unlisted.get_den()};
+  align(values, more);
+  values.top.push_back(more.top[0]);
 
   std::vector<bool> reached(game.size());
   Indices to_visit;
@@ -101,9 +109,9 @@ BeliefGame check_belief_game(const Node& node, const Model& m, const Enclosure& 
   const auto worst_of = [&](std::size_t s, const Indices* belief) -> const Integer& {
     const Integer* worst = nullptr;
     for (const std::size_t t : m.balls[s]) {
-      const std::size_t i = game.meet(s, t, belief);
-      if (!reached[i]) to_visit.push_back(i);
-      reached[i] = true;
+      const std::size_t i = game.meet(s, t, belief, result.exact);
+      if (i < game.size() && !reached[i]) to_visit.push_back(i);
+      if (i < game.size()) reached[i] = true;
       if (worst == nullptr || values.top[i] < *worst) worst = &values.top[i];
     }
     return *worst;

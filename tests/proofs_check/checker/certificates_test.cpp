@@ -202,7 +202,10 @@ INSTANTIATE_TEST_SUITE_P(
         Untruth{bounds, "/belief_game/values/0", "-19", "$.belief_game.values[0]: -19, expected at most -20"},
         Untruth{ties, "/belief_game/values/0", "1/1024", "$.belief_game.values[0]: 1/1024, expected at most 0"},
         Untruth{bounds, "/belief_game/reach", "2", "$.belief_game.reach: 2, expected 1"},
-        Untruth{ties, "/belief_game/positions/0/1", {0}, "$.belief_game.positions: none of state 0 and belief {0, 1}"},
+        Untruth{ties,
+                "/belief_game/positions/0/1",
+                {0},
+                "$.belief_game.positions[0]: not reached, expected only positions that are"},
         Untruth{ties, "/model/metric", "discrete", "$.rounds[2]: the second pair of the same actions"},
         Untruth{ties, "/model/metric", "steps", "$.model.metric: \"steps\", expected \"hops\" or \"discrete\""}));
 
@@ -410,6 +413,27 @@ TEST(BeliefGame, HasNoPositionThatIsNotReached) {
   game["positions"].insert(game["positions"].begin() + 3, json::array({2, json::array({1, 2})}));
   game["values"].push_back("-40");
   EXPECT_EQ(refusal(certificate.dump()), "$.belief_game.positions[3]: not reached, expected only positions that are");
+}
+
+/// State 3 is left with actions that lead to 1 and 3: without such positions, r_min/(1-g) = 0 stands for theirs.
+TEST(BeliefGame, OfALowerBoundMayLackPositionsThatAreNoStarts) {
+  json certificate = sample_certificates().at(ties);
+  json& game = certificate["belief_game"];
+  for (std::size_t i = game["positions"].size(); i-- > 0;) {
+    const std::size_t members = game["positions"][i][1].size();
+    game["values"][i] = i < 6 || members == 3 ? "0" : game["values"][i];
+    if (members == 3) continue;
+    game["positions"].erase(i);
+    game["values"].erase(i);
+  }
+  certificate["claims"] = json::array({{{"claim", "F"}, {"verdict", "undetermined"}}});
+  EXPECT_EQ(refusal(certificate.dump()), "");
+  game["values"][2] = "5";
+  EXPECT_EQ(refusal(certificate.dump()).substr(0, 26), "$.belief_game.values[2]: 5");
+  game["positions"].erase(0);
+  game["values"].erase(0);
+  EXPECT_EQ(refusal(certificate.dump()),
+            "$.belief_game.positions: none of state 0 and belief {0, 1, 2}, expected all that are reached");
 }
 
 TEST(Claims, SidesThatAreMovedTogetherAreRefused) {
