@@ -15,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   };
   maximin::checker::Limits limits;
   limits.bytes = std::size_t{1} << 20U;
-  limits.states = 100;
+  limits.states = limits.states_by_bounds = 100;
+  limits.work = 1e8;
   limits.table_bits = std::size_t{1} << 16U;
   try {
     const auto report = maximin::checker::check({reinterpret_cast<const char*>(data), size}, limits);

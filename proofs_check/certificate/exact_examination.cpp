@@ -98,9 +98,7 @@ Examination examination_of(const BoundsCertificate& c) {
   return e;
 }
 
-Examination examine_exactly(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
-                            const ExaminationOptions& options,
-                            const std::function<void(const std::string&)>& certified) {
+CertifyOptions certify_options(const ExaminationOptions& options) {
   CertifyOptions exact;
   exact.reading = options.reading;
   exact.tie = options.tie;
@@ -110,6 +108,13 @@ Examination examine_exactly(const Model<Rational>& model, const GeometryOverride
   exact.max_positions = options.max_belief_positions;
   exact.stop = options.stop;
   exact.progress = options.progress;
+  return exact;
+}
+
+Examination examine_exactly(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
+                            const ExaminationOptions& options,
+                            const std::function<void(const std::string&)>& certified) {
+  const CertifyOptions exact = certify_options(options);
   try {
     const auto told = [&](const auto& certificate) {
       if (certified) certified(certificate_json(certificate));

@@ -15,6 +15,9 @@ namespace maximin {
 Examination examination_of(const Certificate& certificate);
 Examination examination_of(const BoundsCertificate& certificate);
 
+/// What is asked of an examination, as it is asked of a certificate.
+CertifyOptions certify_options(const ExaminationOptions& options);
+
 /// The examination in exact arithmetic. Where Assumption 1 fails, or a model is too large for exact solves, the
 /// verdicts say so. `certified`, if it is one, is called with the certificate as JSON. Throws InputError as `certify`,
 /// and Interrupted.

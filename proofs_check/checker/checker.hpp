@@ -21,8 +21,10 @@ class Refused : public std::runtime_error {
 struct Limits {
   std::size_t bytes = std::size_t{256} << 20;      ///< of the file
   std::size_t digits = 1'000'000;                  ///< of a number
-  std::size_t states = 2'000;                      ///< of the model: there are tables with an entry per pair of states
+  std::size_t states = 2'000;                      ///< of the model of an exact certificate
+  std::size_t states_by_bounds = 20'000;           ///< of the model of a certificate by bounds
   std::size_t table_bits = std::size_t{1} << 30U;  ///< of a table over one denominator; Q_n grows with n
+  double work = 3e10;                              ///< steps of all loops but those that go once over the file
 };
 
 /// One claim as it was verified.
@@ -38,7 +40,9 @@ struct Report {
   std::size_t states = 0;
   std::size_t actions = 0;
   std::size_t rounds = 0;  ///< N, the rounds that were replayed
-  std::size_t period = 0;  ///< of the limit; 0 where it was not decided
+  std::size_t period = 0;  ///< of the limit, or of its boxes; 0 where it was not decided
+  bool bounds = false;     ///< a certificate by bounds, not an exact one
+  bool boxes = false;      ///< the limit is enclosed, not an orbit
   std::vector<ClaimVerdict> claims;
   std::vector<std::string> left_out;  ///< claims that the certificate says nothing of
 

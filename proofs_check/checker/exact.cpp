@@ -74,12 +74,27 @@ int compare(const Table& x, std::size_t i, const Table& y, std::size_t j) {
 }
 
 Table difference(const Table& x, const Table& y) {
-  Table result;
-  result.bottom = lcm(x.bottom, y.bottom);
-  const Integer of_x = result.bottom / x.bottom, of_y = result.bottom / y.bottom;
-  result.top.reserve(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) result.top.emplace_back(x.top[i] * of_x - y.top[i] * of_y);
+  Table result = x, other = y;
+  align(result, other);
+  for (std::size_t i = 0; i < x.size(); ++i) result.top[i] -= other.top[i];
   return result;
+}
+
+Table total(const Table& x, const Table& y) {
+  Table result = x, other = y;
+  align(result, other);
+  for (std::size_t i = 0; i < x.size(); ++i) result.top[i] += other.top[i];
+  return result;
+}
+
+void align(Table& x, Table& y) {
+  const Integer bottom = lcm(x.bottom, y.bottom);
+  for (Table* table : {&x, &y}) {
+    const Integer factor = bottom / table->bottom;
+    if (factor == 1) continue;
+    for (Integer& top : table->top) top *= factor;
+    table->bottom = bottom;
+  }
 }
 
 std::size_t largest(const Table& x) {

@@ -43,8 +43,12 @@ std::optional<Table> over_one_denominator(const std::vector<Rational>& numbers, 
 /// The sign of x[i] - y[j].
 int compare(const Table& x, std::size_t i, const Table& y, std::size_t j);
 
-/// x - y, entry by entry.
+/// x - y, and x + y, entry by entry.
 Table difference(const Table& x, const Table& y);
+Table total(const Table& x, const Table& y);
+
+/// Writes both over one denominator.
+void align(Table& x, Table& y);
 
 /// Where the largest entry stands.
 std::size_t largest(const Table& x);

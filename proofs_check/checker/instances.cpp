@@ -35,23 +35,18 @@ bool is_of_pairs(ClaimId id) {
   return form(id).states == 2;
 }
 
-bool has_pairs(const Model& m) {
-  for (std::size_t s = 0; s < m.states; ++s) {
-    for (std::size_t t = s + 1; t < m.states; ++t) {
-      if (m.finite[s * m.states + t]) return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
-ClaimCheck::ClaimCheck(const Node& node, const Model& model, std::size_t rounds) : model_(model), path_(node.path()) {
+ClaimCheck::ClaimCheck(const Node& node, const Model& model, std::size_t rounds, bool bounds)
+    : model_(model), path_(node.path()) {
   if (!node.has("claim") || !node.has("verdict")) refuse(path_, "expected an object with a claim and its verdict");
   static_assert(forms.size() == 11 && verdicts.size() == 3);
   id_ = static_cast<ClaimId>(node.member("claim").one_of({forms[0].name, forms[1].name, forms[2].name, forms[3].name,
                                                           forms[4].name, forms[5].name, forms[6].name, forms[7].name,
                                                           forms[8].name, forms[9].name, forms[10].name}));
+  if (bounds && id_ == ClaimId::lemma_3) {
+    refuse(path_ + ".claim", "\"lemma-3\", expected no entry of it in a certificate by bounds");
+  }
   verdict_ = static_cast<Verdict>(node.member("verdict").one_of({verdicts[0], verdicts[1], verdicts[2]}));
   if (undetermined()) {
     node.expect_members({"claim", "verdict"});
@@ -60,14 +55,16 @@ ClaimCheck::ClaimCheck(const Node& node, const Model& model, std::size_t rounds)
   node.expect_members({"claim", "verdict", "left", "right", "at"});
   left_ = node.member("left").number();
   right_ = node.member("right").number();
-  const bool nothing_to_name = is_of_pairs(id_) && !has_pairs(model);
+  const bool nothing_to_name = is_of_pairs(id_) && !model.has_pairs;
   if (nothing_to_name) {
     node.member("at").expect_members({});
     see({}, 0, 0);
   } else {
     read_place(node.member("at"), rounds);
   }
-  if (verdict_ == violated_ && model.l2) refuse(path_ + ".verdict", "violated, expected it only of l1 and linf");
+  if (verdict_ == violated_ && (bounds || model.metric.l2)) {
+    refuse(path_ + ".verdict", "violated, expected it never " + std::string(bounds ? "by bounds" : "under l2"));
+  }
 }
 
 void ClaimCheck::read_place(const Node& at, std::size_t rounds) {
@@ -97,53 +94,18 @@ void ClaimCheck::see(const Place& place, const Rational& left, const Rational& r
   if (place == at_ && left == left_ && right == right_) least_named_ = gap;
 }
 
-void ClaimCheck::see_each(std::size_t n, const Table& left, const Rational& more, const Rational& right, bool proves) {
-  const auto see_at = [&](std::size_t s, std::size_t a) {
-    see({n, s, Place::none, a}, left[model_.at(s, a)] + more, right, proves);
+void ClaimCheck::see_each(std::size_t n, const Table& left, const Rational& right, bool proves, const Table* added) {
+  const auto proves_at = [&](std::size_t i) { return proves && (added == nullptr || added->top[i] == 0); };
+  const auto see_at = [&](std::size_t i) {
+    see({n, i / model_.actions, Place::none, i % model_.actions}, left[i], right, proves_at(i));
   };
-  const std::size_t i = largest(left);
-  see_at(i / model_.actions, i % model_.actions);
-  if (at_.n == n) see_at(at_.s, at_.a);
-}
-
-void ClaimCheck::see_pairs(std::size_t n, const Table& x, const Rational& slack, const Table& right) {
-  const Model& m = model_;
-  // All sides are numerators over x.bottom * of_x, or right.bottom, until the tightest instance is known.
-  const Integer of_x = slack == 0 ? Integer(1) : Integer(slack.get_den() * m.whole);
-  const Integer of_row = slack.get_num() * x.bottom, bottom = x.bottom * of_x;
-  Integer left, added, gap;
-  const auto find_left = [&](const Place& place) {
-    added = slack == 0 ? Integer(0) : Integer(of_row * sum(row_differences(m, place.s, place.t, place.a)));
-    left = x.top[m.at(place.s, place.a)] - x.top[m.at(place.t, place.a)];
-    left = abs(left) * of_x + added;
-  };
-  const auto see_at = [&](const Place& place) {
-    find_left(place);
-    see(place, Table{{left}, bottom}[0], right[place.s * m.states + place.t], added == 0);
-  };
-  Place tightest;
-  Integer least, widest;
-  for (std::size_t s = 0; s < m.states; ++s) {
-    for (std::size_t t = s + 1; t < m.states; ++t) {
-      if (!m.finite[s * m.states + t]) continue;
-      Place of_pair;
-      for (std::size_t a = 0; a < m.actions; ++a) {
-        const Place place{n, s, t, a};
-        find_left(place);
-        if ((verdict_ == violated_ && added != 0) || (of_pair.n == n && left <= widest)) continue;
-        swap(widest, left);
-        of_pair = place;
-      }
-      if (of_pair.n != n) continue;
-      gap = right.top[s * m.states + t] * bottom - widest * right.bottom;
-      if (tightest.n == n && gap >= least) continue;
-      swap(least, gap);
-      tightest = of_pair;
-    }
+  std::size_t tightest = left.size();
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (wants_violations() && !proves_at(i)) continue;
+    if (tightest == left.size() || left.top[i] > left.top[tightest]) tightest = i;
   }
-  if (tightest.n != n) return;
-  see_at(tightest);
-  if (at_.n == n && at_.s < at_.t && m.finite[at_.s * m.states + at_.t]) see_at(at_);
+  if (tightest < left.size()) see_at(tightest);
+  if (at_.n == n) see_at(model_.at(at_.s, at_.a));
 }
 
 void ClaimCheck::verify() const {
@@ -161,10 +123,10 @@ void ClaimCheck::verify() const {
   if (!least_named_) refuse(path_ + ".at", "no instance with these sides, expected the one that they are the sides of");
 }
 
-std::vector<ClaimCheck> read_claims(const Node& node, const Model& model, std::size_t rounds) {
+std::vector<ClaimCheck> read_claims(const Node& node, const Model& model, std::size_t rounds, bool bounds) {
   std::vector<ClaimCheck> claims;
   for (const Node& entry : node.items()) {
-    claims.emplace_back(entry, model, rounds);
+    claims.emplace_back(entry, model, rounds, bounds);
     if (claims.size() == 1 || claims[claims.size() - 2].id() < claims.back().id()) continue;
     refuse(entry.path() + ".claim", "not after the one before it, expected the order of the format and none twice");
   }
@@ -172,9 +134,10 @@ std::vector<ClaimCheck> read_claims(const Node& node, const Model& model, std::s
   return claims;
 }
 
-std::vector<std::string> left_out(const std::vector<ClaimCheck>& claims) {
+std::vector<std::string> left_out(const std::vector<ClaimCheck>& claims, bool bounds) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < forms.size(); ++i) {
+    if (bounds && static_cast<ClaimId>(i) == ClaimId::lemma_3) continue;
     const auto is_it = [i](const ClaimCheck& claim) { return static_cast<std::size_t>(claim.id()) == i; };
     if (std::none_of(claims.begin(), claims.end(), is_it)) names.emplace_back(forms[i].name);
   }

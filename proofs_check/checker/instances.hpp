@@ -21,23 +21,23 @@ struct Place {
 /// says whether the entry is true. Of a violated claim only the instances that prove a violation are looked at.
 class ClaimCheck {
  public:
-  /// Reads an entry; `rounds` is how many rounds and phases can be named.
-  ClaimCheck(const Node& node, const Model& model, std::size_t rounds);
+  /// Reads an entry; `rounds` is how many rounds and phases can be named. By bounds nothing is ever violated.
+  ClaimCheck(const Node& node, const Model& model, std::size_t rounds, bool bounds);
 
   ClaimId id() const { return id_; }
   const std::string& path() const { return path_; }
+  const Place& place() const { return at_; }
   bool undetermined() const { return verdict_ == undetermined_; }
+  bool wants_violations() const { return verdict_ == violated_; }
   ClaimVerdict verdict() const;
 
   /// One instance: left <= right is claimed. `proves`: where it is violated, the claim is.
   void see(const Place& place, const Rational& left, const Rational& right, bool proves = true);
 
-  /// For every s and a, left(s,a) + more <= right.
-  void see_each(std::size_t n, const Table& left, const Rational& more, const Rational& right, bool proves = true);
-
-  /// For every s < t at a finite distance and every a, |x(s,a) - x(t,a)| + slack sum_s' |P(s'|s,a) - P(s'|t,a)| is at
-  /// most right(s,t). An instance proves a violation where nothing is added.
-  void see_pairs(std::size_t n, const Table& x, const Rational& slack, const Table& right);
+  /// For every s and a, left(s,a) <= right. Of a table `added`, what is in left(s,a) and only bounds it: an instance
+  /// proves a violation where that is 0.
+  void see_each(std::size_t n, const Table& left, const Rational& right, bool proves = true,
+                const Table* added = nullptr);
 
   /// Refuses the entry where the instances that were seen do not bear it out.
   void verify() const;
@@ -57,9 +57,9 @@ class ClaimCheck {
 };
 
 /// Reads the section: entries in the order of the claims, none twice.
-std::vector<ClaimCheck> read_claims(const Node& node, const Model& model, std::size_t rounds);
+std::vector<ClaimCheck> read_claims(const Node& node, const Model& model, std::size_t rounds, bool bounds);
 
 /// The names of the claims that have no entry.
-std::vector<std::string> left_out(const std::vector<ClaimCheck>& claims);
+std::vector<std::string> left_out(const std::vector<ClaimCheck>& claims, bool bounds);
 
 }  // namespace maximin::checker

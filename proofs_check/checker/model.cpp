@@ -5,8 +5,6 @@
 namespace maximin::checker {
 namespace {
 
-using Points = std::vector<std::vector<Rational>>;
-
 Table rewards(const Node& node, const Model& m) {
   std::vector<Rational> all;
   for (const Node& row : node.items(m.states)) {
@@ -32,6 +30,7 @@ void read_transitions(const Node& node, Model& m) {
   m.whole = table.bottom;
   m.rows.resize(m.states * m.actions);
   std::vector<Integer> sums(m.rows.size());
+  m.entries = places.size();
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::size_t row = m.at(places[i][0], places[i][1]);
     m.rows[row].emplace_back(places[i][2], table.top[i]);
@@ -46,121 +45,33 @@ void read_transitions(const Node& node, Model& m) {
   }
 }
 
-Points read_points(const Node& node, const Model& m) {
-  Points points;
-  for (const Node& row : node.items(m.states)) {
-    if (points.empty() && row.items().empty()) refuse(row.path(), "empty, expected a coordinate at least");
-    const std::vector<Node> coordinates = points.empty() ? row.items() : row.items(points[0].size());
-    points.emplace_back();
-    for (const Node& x : coordinates) points.back().push_back(x.number());
-  }
-  return points;
-}
-
-/// The distance under a norm; under l2 its square.
-Rational measure(const std::vector<Rational>& x, const std::vector<Rational>& y, std::size_t norm) {
-  enum { l1, l2 };
-  Rational d;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Rational difference = abs(Rational(x[i] - y[i]));
-    if (norm == l1) {
-      d += difference;
-    } else if (norm == l2) {
-      d += difference * difference;
-    } else if (difference > d) {
-      d = difference;
-    }
-  }
-  return d;
-}
-
-/// Sets all that rests on distances, d(s,t) under l2 being given as its square.
-void set_distances(const Node& node, Model& m, std::vector<Rational> d) {
-  const Rational radius = m.l2 ? Rational(m.eps * m.eps) : m.eps;
-  m.balls.resize(m.states);
-  m.rounded.assign(d.size(), false);
-  for (std::size_t i = 0; i < d.size(); ++i) {
-    if (m.finite[i] && d[i] <= radius) m.balls[i / m.states].push_back(i % m.states);
-    if (!m.l2) continue;
-    const Root r = root(d[i]);
-    d[i] = r.low;
-    m.rounded[i] = !r.exact;
-  }
-  m.near = node.table_of(d);
-}
-
-void expect_metric(const Node& node, const Model& m) {
-  const std::size_t n = m.states;
-  const auto refuse_at = [&](std::size_t s, std::size_t t, const std::string& what) {
-    refuse(item(item(node.path(), s), t), what);
-  };
-  for (std::size_t s = 0; s < n; ++s) {
-    if (!m.finite[s * n + s] || m.near.top[s * n + s] != 0) refuse_at(s, s, "not 0, expected 0 on the diagonal");
-    for (std::size_t t = 0; t < n; ++t) {
-      const std::size_t st = s * n + t, ts = t * n + s;
-      if (m.near.top[st] < 0) refuse_at(s, t, "negative, expected a distance");
-      if (m.finite[st] != m.finite[ts] || m.near.top[st] != m.near.top[ts]) {
-        refuse_at(s, t,
-                  "not the distance of " + std::to_string(t) + " to " + std::to_string(s) + ", expected symmetry");
-      }
-    }
-  }
-  Integer detour;
-  for (std::size_t s = 0; s < n; ++s) {
-    for (std::size_t u = 0; u < n; ++u) {
-      if (!m.finite[s * n + u]) continue;
-      for (std::size_t t = 0; t < n; ++t) {
-        if (!m.finite[u * n + t]) continue;
-        detour = m.near.top[s * n + u] + m.near.top[u * n + t];
-        if (m.finite[s * n + t] && m.near.top[s * n + t] <= detour) continue;
-        refuse_at(s, t, "more than by way of state " + std::to_string(u) + ", expected the triangle inequality");
-      }
-    }
-  }
-}
-
-void read_points_and_norm(const Node& node, Model& m) {
-  const std::size_t norm = node.member("norm").one_of({"l1", "l2", "linf"});
-  const Points points = read_points(node.member("points"), m);
-  m.l2 = norm == 1;
-  m.finite.assign(m.states * m.states, true);
-  std::vector<Rational> d;
-  for (const auto& x : points) {
-    for (const auto& y : points) d.push_back(measure(x, y, norm));
-  }
-  set_distances(node.member("points"), m, std::move(d));
-}
-
-void read_matrix(const Node& node, Model& m) {
-  std::vector<Rational> d;
-  for (const Node& row : node.items(m.states)) {
-    for (const Node& distance : row.items(m.states)) {
-      m.finite.push_back(!distance.is_null());
-      d.push_back(distance.is_null() ? Rational(0) : distance.number());
-    }
-  }
-  set_distances(node, m, std::move(d));
-  expect_metric(node, m);
-}
-
 }  // namespace
 
-Rational Model::far_at(std::size_t s, std::size_t t) const {
-  const Rational step(1, Integer(1) << 64U);
-  return rounded[s * states + t] ? Rational(near_at(s, t) + step) : near_at(s, t);
+Integer Model::length(std::size_t s, std::size_t t) const {
+  std::vector<Integer> lengths(states);
+  metric.from(s, lengths);
+  return lengths[t];
 }
 
-Model read_model(const Node& node) {
-  const bool points = node.has("points");
+void Model::spend(const std::string& path, double steps) const {
+  work_left -= steps;
+  if (work_left < 0) refuse(path, "more work than this checker takes on, expected a smaller model or fewer claims");
+}
+
+Model read_model(const Node& node, std::size_t most_states) {
   std::vector<const char*> names{"format", "version", "states", "actions", "discount", "eps", "rewards", "transitions"};
-  names.push_back(points ? "points" : "distances");
-  if (points) names.push_back("norm");
+  if (node.has("points")) {
+    names.insert(names.end(), {"points", "norm"});
+  } else {
+    names.push_back(node.has("metric") ? "metric" : "distances");
+  }
   node.expect_members(names);
   node.member("format").one_of({"maximin-mdp"});
   node.member("version").integer(1, 1);
   Model m;
   m.most_bits = node.limits().table_bits;
-  m.states = node.member("states").integer(1, node.limits().states);
+  m.work_left = node.limits().work;
+  m.states = node.member("states").integer(1, most_states);
   m.actions = node.member("actions").integer(1, node.limits().bytes);  // each has a reward in the file
   m.discount = node.member("discount").number();
   m.eps = node.member("eps").number();
@@ -170,26 +81,27 @@ Model read_model(const Node& node) {
   if (m.eps < 0) refuse(node.path() + ".eps", shown(m.eps) + ", expected a number from 0 on");
   m.rewards = rewards(node.member("rewards"), m);
   read_transitions(node.member("transitions"), m);
-  if (points) {
-    read_points_and_norm(node, m);
-  } else {
-    read_matrix(node.member("distances"), m);
-  }
+  read_metric(node, m);
   return m;
 }
 
-std::vector<Integer> row_differences(const Model& m, std::size_t s, std::size_t t, std::size_t a) {
-  std::vector<Integer> differences(m.states);
-  for (const auto& [next, p] : m.rows[m.at(s, a)]) differences[next] += p;
-  for (const auto& [next, p] : m.rows[m.at(t, a)]) differences[next] -= p;
-  for (Integer& x : differences) x = abs(x);
-  return differences;
-}
-
-Integer sum(const std::vector<Integer>& numbers) {
-  Integer total;
-  for (const Integer& x : numbers) total += x;
-  return total;
+RowDifference row_difference(const Model& m, std::size_t s, std::size_t t, std::size_t a) {
+  const auto &x = m.rows[m.at(s, a)], &y = m.rows[m.at(t, a)];
+  RowDifference result;
+  Integer size;
+  for (auto i = x.begin(), j = y.begin(); i != x.end() || j != y.end();) {
+    if (j == y.end() || (i != x.end() && i->first < j->first)) {
+      size = (i++)->second;
+    } else if (i == x.end() || j->first < i->first) {
+      size = (j++)->second;
+    } else {
+      size = (i++)->second - (j++)->second;
+    }
+    size = abs(size);
+    result.sum += size;
+    if (size > result.most) result.most = size;
+  }
+  return result;
 }
 
 Table back(const Model& m, const Table& values) {
@@ -207,6 +119,10 @@ Table back(const Model& m, const Table& values) {
     q.top.emplace_back(m.rewards.top[i] * of_reward + mean * of_mean);
   }
   return q;
+}
+
+Table back_without_rewards(const Model& m, const Table& values) {
+  return difference(back(m, values), m.rewards);
 }
 
 Table taken(const Model& m, const Table& q, const Indices& actions) {

@@ -10,34 +10,56 @@ namespace maximin::checker {
 
 using Indices = std::vector<std::size_t>;
 
-/// The model of a certificate, with what follows from it alone. Tables by (s,a) have their entry at s * actions + a,
-/// those by (s,t) at s * states + t.
+/// The distances of a model, worked out as they are asked for. A length is a distance, under l2 its square, as a
+/// multiple of 1/unit; -1 is that of an infinite one.
+struct Metric {
+  bool l2 = false;
+  Integer unit{1};
+  std::function<void(std::size_t s, std::vector<Integer>& lengths)> from;  ///< the lengths from s to every state
+
+  Rational near(const Integer& length) const;     ///< d-
+  Rational far(const Integer& length) const;      ///< d+
+  Integer reach(const Rational& distance) const;  ///< the largest length of distances up to that one, >= 0
+};
+
+/// The model of a certificate, with what follows from it alone. Tables by (s,a) have their entry at s * actions + a.
 struct Model {
   std::size_t states = 0, actions = 0;
   Rational discount, eps;
   Table rewards;
   std::vector<std::vector<std::pair<std::size_t, Integer>>> rows;  ///< of (s,a): s' and P(s'|s,a) `whole`
   Integer whole{1};
-  bool l2 = false;
-  Table near;                 ///< d-(s,t); 0 where infinite
-  std::vector<bool> rounded;  ///< d+(s,t) is 2^-64 above d-(s,t)
-  std::vector<bool> finite;   ///< d(s,t) is
-  std::vector<Indices> balls;
-  std::size_t most_bits = 0;  ///< of one table
+  Metric metric;
+  std::vector<Indices> balls;  ///< states ascending
+  bool has_pairs = false;      ///< of states at a finite distance
+  std::size_t entries = 0;     ///< what a sweep over the model looks at: transitions, and all balls for each action
+  std::size_t most_bits = 0;   ///< of one table
+  mutable double work_left = 0;
 
   std::size_t at(std::size_t s, std::size_t a) const { return s * actions + a; }
-  Rational near_at(std::size_t s, std::size_t t) const { return near[s * states + t]; }
-  Rational far_at(std::size_t s, std::size_t t) const;
+  Integer length(std::size_t s, std::size_t t) const;
+
+  /// To be called before what takes so many steps: refuses what would take too many in all.
+  void spend(const std::string& path, double steps) const;
 };
 
-Model read_model(const Node& node);
+/// Of so many states at most.
+Model read_model(const Node& node, std::size_t most_states);
 
-/// |P(s'|s,a) - P(s'|t,a)| `whole` by s'.
-std::vector<Integer> row_differences(const Model& model, std::size_t s, std::size_t t, std::size_t a);
-Integer sum(const std::vector<Integer>& numbers);
+/// Of a model all else of which was read: its distances and balls.
+void read_metric(const Node& node, Model& model);
+
+/// |P(s'|s,a) - P(s'|t,a)| `whole`: the largest over s', and their sum.
+struct RowDifference {
+  Integer most, sum;
+};
+RowDifference row_difference(const Model& model, std::size_t s, std::size_t t, std::size_t a);
 
 /// back(V)(s,a) = R(s,a) + g sum_s' P(s'|s,a) V(s').
 Table back(const Model& model, const Table& values);
+
+/// The same without R.
+Table back_without_rewards(const Model& model, const Table& values);
 
 /// Q(s, actions[s]), as values.
 Table taken(const Model& model, const Table& q, const Indices& actions);

@@ -2,14 +2,26 @@
 
 namespace maximin::checker {
 
-Table check_optimal(const Node& node, const Model& m) {
-  return expect_values(m, node.table(m.states), node.path(), [&m](const Table& q, std::size_t s) {
+Optimal check_optimal(const Node& node, const Model& m) {
+  Table values = node.table(m.states);
+  const Table q = expect_values(m, values, node.path(), [&m](const Table& table, std::size_t s) {
     std::size_t best = 0;
     for (std::size_t a = 1; a < m.actions; ++a) {
-      if (q.top[m.at(s, a)] > q.top[m.at(s, best)]) best = a;
+      if (table.top[m.at(s, a)] > table.top[m.at(s, best)]) best = a;
     }
     return best;
   });
+  return {std::move(values), {q, q}};
+}
+
+Optimal check_optimal_by_bounds(const Node& node, const Model& m) {
+  node.expect_members({"low", "high"});
+  const Node low_node = node.member("low"), high_node = node.member("high");
+  const Table low = low_node.table(m.states), high = high_node.table(m.states);
+  const Enclosure q = enclose(m, low, high);
+  expect_side(low, low_node.path(), Side::below, best_values(m, q.low));
+  expect_side(high, high_node.path(), Side::above, best_values(m, q.high));
+  return {high, q};
 }
 
 std::vector<Pair> check_pairs(const Node& node, const Model& m) {
@@ -33,11 +45,12 @@ std::vector<Pair> check_pairs(const Node& node, const Model& m) {
   return pairs;
 }
 
-Table check_rounds(const Indices& rounds, const Model& m, const std::vector<Pair>& pairs, bool highest,
-                   const std::function<void(const Round&)>& visit) {
-  Table q{std::vector<Integer>(m.rows.size()), 1};
+LastRound check_rounds(const Indices& rounds, const Model& m, const std::vector<Pair>& pairs, bool highest,
+                       const std::function<void(const Round&)>& visit) {
+  Table values, q{std::vector<Integer>(m.rows.size()), 1};
   std::size_t met = 0;  // pairs so far
   for (std::size_t n = 0; n < rounds.size(); ++n) {
+    m.spend("$.rounds", static_cast<double>(m.entries) * (1 + static_cast<double>(bits(1, q.bottom)) / 1000));
     const std::size_t i = rounds[n];
     const bool first = i == met;
     if (i > met)
@@ -48,13 +61,14 @@ Table check_rounds(const Indices& rounds, const Model& m, const std::vector<Pair
     Indices attack;
     for (std::size_t s = 0; s < m.states; ++s) attack.push_back(best_response(m, q, pairs[i].policy, s, highest));
     expect_equal(item("$.pairs", i) + ".attack", pairs[i].attack, attack, of_round);
-    Table next = back(m, taken(m, q, pairs[i].composed));
+    values = taken(m, q, pairs[i].composed);
+    Table next = back(m, values);
     Round round{n, i, first, std::move(q), std::move(next)};
     visit(round);
     q = std::move(round.next);
   }
   if (met != pairs.size()) refuse(item("$.pairs", met), "in no round, expected only pairs that occur");
-  return q;
+  return {values, values, q};
 }
 
 }  // namespace maximin::checker

@@ -79,6 +79,17 @@ Verdict verdict_on_the_sharper_belief(const Certificate& c) {
   return Verdict::holds;
 }
 
+Verdict sharper_belief_proved(const Model<Rational>& model, ExaminationOptions options) {
+  options.only = std::set{ClaimId::f_belief};
+  try {
+    return verdict_on_the_sharper_belief(certify(model, {}, certify_options(options)));
+  } catch (const AssumptionFails&) {
+    return Verdict::assumption_fails;
+  } catch (const BudgetExhausted&) {
+    return Verdict::undetermined;
+  }
+}
+
 }  // namespace
 
 const std::vector<Goal>& goals() {
@@ -111,13 +122,9 @@ Verdict proved(const Goal& goal, const Model<double>& model, const ExaminationOp
   ExaminationOptions exact = options;
   exact.only.emplace();
   if (goal.claim) exact.only->insert(*goal.claim);
-  if (goal.name == sharper_belief) exact.only->insert(ClaimId::f_belief);
-  Verdict on_belief = Verdict::undetermined;
-  const Examination found = examine_exactly(rationalise(model), {}, exact, [&](const Certificate& c) {
-    if (goal.name == sharper_belief) on_belief = verdict_on_the_sharper_belief(c);
-  });
-  if (goal.claim) return found.check(*goal.claim).verdict;
-  return goal.name == settling ? verdict_on_settling(found) : on_belief;
+  if (goal.name == sharper_belief) return sharper_belief_proved(rationalise(model), exact);
+  const Examination found = examine_exactly(rationalise(model), {}, exact);
+  return goal.claim ? found.check(*goal.claim).verdict : verdict_on_settling(found);
 }
 
 }  // namespace maximin

@@ -25,7 +25,7 @@ class OneShot {
   std::string refusal(const char* radius, const Rational& q_n_above = 0, bool highest = false) const {
     static const Limits limits;
     const json parsed = json::parse(model_text());
-    const Model model = read_model(Node(parsed, "$.model", limits));
+    const Model model = read_model(Node(parsed, "$.model", limits), limits.states);
     Table last = model.rewards;
     for (Integer& top : last.top) top *= 100;
     last.bottom *= 100;

@@ -28,7 +28,7 @@ json matrix(const char* distances) {
 Model read(const json& model) {
   static const Limits limits;
   const json parsed = json::parse(model.dump());
-  return read_model(Node(parsed, "$.model", limits));
+  return read_model(Node(parsed, "$.model", limits), limits.states);
 }
 
 std::string refusal(const json& model) {
@@ -65,17 +65,19 @@ TEST(Distances, UnderL2AreEnclosed) {
   json model = points("l2", "1");
   model["points"] = json::parse(R"([["0", "0"], ["1", "1"], ["3", "4"]])");
   const Model m = read(model);
-  EXPECT_LT(m.near_at(0, 1) * m.near_at(0, 1), 2);
-  EXPECT_GT(m.far_at(0, 1) * m.far_at(0, 1), 2);
-  EXPECT_EQ(m.far_at(0, 1) - m.near_at(0, 1), Rational(1, Integer(1) << 64));
-  EXPECT_EQ(m.near_at(0, 2), 5);
-  EXPECT_EQ(m.far_at(0, 2), 5);
+  const Rational near = m.metric.near(m.length(0, 1)), far = m.metric.far(m.length(0, 1));
+  EXPECT_LT(near * near, 2);
+  EXPECT_GT(far * far, 2);
+  EXPECT_EQ(far - near, Rational(1, Integer(1) << 64));
+  EXPECT_EQ(m.metric.near(m.length(0, 2)), 5);
+  EXPECT_EQ(m.metric.far(m.length(0, 2)), 5);
 }
 
 TEST(Distances, NullIsInfinite) {
   const Model m = read(matrix(R"([["0", "1", null], ["1", "0", null], [null, null, "0"]])"));
   EXPECT_EQ(m.balls, (std::vector<Indices>{{0, 1}, {0, 1}, {2}}));
-  EXPECT_FALSE(m.finite[2]);
+  EXPECT_EQ(m.length(0, 2), -1);
+  EXPECT_EQ(m.length(0, 1), m.metric.unit);
 }
 
 TEST(Distances, AreAMetric) {
@@ -91,6 +93,32 @@ TEST(Distances, AreAMetric) {
   expect_refused(R"([["0", "1", "1"], ["1", "1/2", "1"], ["1", "1", "0"]])", "$.model.distances[1][1]: not 0");
   expect_refused(R"([["0", "1", "1"], ["1", "0", "-1"], ["1", "-1", "0"]])", "$.model.distances[1][2]: negative");
   expect_refused(R"([["0", "1"], ["1", "0", "1"], ["1", "1", "0"]])", "$.model.distances[0]: 2 items, expected 3");
+}
+
+/// 0 leads to 1 and 1 to 2, and 3 to itself alone.
+TEST(Distances, HopsAreStepsEitherWay) {
+  json model = points("l1", "1");
+  model.erase("points");
+  model.erase("norm");
+  model["states"] = 4;
+  model["rewards"] = json::parse(R"([["0"], ["0"], ["0"], ["0"]])");
+  model["transitions"] = json::parse(R"([[0, 0, 1, "1"], [1, 0, 1, "1/2"], [1, 0, 2, "1/2"], [2, 0, 2, "1"],
+                                         [3, 0, 3, "1"]])");
+  model["metric"] = "hops";
+  const Model hops = read(model);
+  EXPECT_EQ(hops.balls, (std::vector<Indices>{{0, 1}, {0, 1, 2}, {1, 2}, {3}}));
+  EXPECT_EQ(hops.length(2, 0), 2);
+  EXPECT_EQ(hops.length(2, 3), -1);
+  EXPECT_TRUE(hops.has_pairs);
+  model["metric"] = "discrete";
+  const Model discrete = read(model);
+  EXPECT_EQ(discrete.balls[2], (Indices{0, 1, 2, 3}));
+  EXPECT_EQ(discrete.length(2, 2), 0);
+  EXPECT_EQ(discrete.length(2, 3), 1);
+  model["eps"] = "99/100";
+  EXPECT_EQ(read(model).balls[2], Indices{2});
+  model["distances"] = json::array();
+  EXPECT_EQ(refusal(model), "$.model: \"distances\" is no member of it, expected none but those of the format");
 }
 
 TEST(Backup, IsThatOfTheFormat) {

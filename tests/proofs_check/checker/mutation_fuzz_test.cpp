@@ -111,9 +111,9 @@ class Mutator {
   }
 
   void change_leaf(json& leaf) {
-    static const std::vector<std::string> words{"holds", "violated", "undetermined", "lowest", "highest", "corrected",
-                                                "paper", "l1",       "l2",           "linf",   "lemma-1", "theorem-1",
-                                                "A",     "F"};
+    static const std::vector<std::string> words{
+        "holds", "violated", "undetermined", "lowest",    "highest", "corrected", "paper", "l1",
+        "l2",    "linf",     "lemma-1",      "theorem-1", "hops",    "discrete",  "A",     "F"};
     if (below(20) == 0) {
       leaf = nullptr;
     } else if (leaf.is_boolean()) {
@@ -211,7 +211,15 @@ bool may_vary(const Mutant& mutant) {
   if (field == "$.limit.radius" || starts("$.rounds") || field == "$.claims as a whole") return true;
   if (field == "$.belief_game.exact") return original["belief_game"]["exact"] == true;
   if (field == "$.belief_game as a whole" || field == "$.limit as a whole") return true;  // null
-  if (starts("$.belief_game.values")) return original["belief_game"]["exact"] == false;
+  if (starts("$.belief_game.values") && original["belief_game"].contains("exact"))
+    return original["belief_game"]["exact"] == false;
+  if (starts("$.limit.boxes")) return true;  // other bounds, or a phase twice
+  if (original["format"] == "maximin-bounds") {
+    for (const char* bound : {"$.constants", "$.optimal", "$.bits", "$.pairs[].below", "$.pairs[].above", "$.test_time",
+                              "$.belief_game.values"}) {
+      if (starts(bound)) return true;
+    }
+  }
   return field == "$.claims[] weakened" || starts("$.claims[].at");
 }
 

@@ -40,7 +40,10 @@ class NaiveCertificate {
     bool proves;
   };
 
-  explicit NaiveCertificate(const Json& certificate) : c_(certificate), tie_highest_(certificate["tie"] == "highest") {}
+  explicit NaiveCertificate(const Json& certificate)
+      : c_(certificate),
+        tie_highest_(certificate["tie"] == "highest"),
+        bounds_(certificate["format"] == "maximin-bounds") {}
 
   static Q number(const Json& text) { return Q(text.get<std::string>()); }
   static Values numbers(const Json& list) {
@@ -149,6 +152,8 @@ class NaiveCertificate {
             if (model["norm"] == "l1") *d += difference;
             if (l2_) *d += difference * difference;
           }
+        } else if (model.contains("metric")) {
+          d = model["metric"] == "hops" ? hops(s, t) : std::optional<Q>(s == t ? 0 : 1);
         } else {
           d = model["distances"][s][t].is_null() ? std::nullopt : std::optional<Q>(number(model["distances"][s][t]));
         }
@@ -165,6 +170,21 @@ class NaiveCertificate {
     }
     return expect(g_ >= 0 && g_ < 1 && eps_ >= 0, "discount or eps") && expect(l2_ || is_metric(), "no metric");
   }
+  /// Steps from s to t, by spreading out from s n times.
+  std::optional<Q> hops(int s, int t) const {
+    States met{s};
+    for (int steps = 0; steps <= n_; ++steps) {
+      if (met.count(t)) return Q(steps);
+      for (const int from : States(met)) {
+        for (int to = 0; to < n_; ++to) {
+          for (int a = 0; a < m_; ++a) {
+            if (p_[from][a][to] > 0 || p_[to][a][from] > 0) met.insert(to);
+          }
+        }
+      }
+    }
+    return std::nullopt;
+  }
   bool is_metric() const {
     for (int s = 0; s < n_; ++s) {
       for (int t = 0; t < n_; ++t) {
@@ -180,15 +200,18 @@ class NaiveCertificate {
   }
 
   bool constants() {
-    v_star_ = numbers(c_["optimal"]);
+    v_star_ = numbers(bounds_ ? c_["optimal"]["high"] : c_["optimal"]);
     q_star_ = back(v_star_);
+    const Values below = bounds_ ? numbers(c_["optimal"]["low"]) : v_star_;
+    q_low_ = back(below);
     for (int s = 0; s < n_; ++s) {
-      if (!expect(v_star_[s] == *std::max_element(q_star_[s].begin(), q_star_[s].end()), "optimal")) return false;
+      if (!expect(v_star_[s] >= *std::max_element(q_star_[s].begin(), q_star_[s].end()), "optimal")) return false;
+      if (!expect(below[s] <= *std::max_element(q_low_[s].begin(), q_low_[s].end()), "optimal")) return false;
     }
     std::map<std::string, std::vector<std::pair<Json, Q>>> quotients;
     for (const auto& [pair, d] : far_) {
       const auto [s, t] = pair;
-      if (s >= t) continue;
+      if (bounds_ ? s == t : s >= t) continue;
       for (int a = 0; a < m_; ++a) {
         Q total = 0;
         std::vector<std::tuple<std::string, Json, Q>> found;
@@ -199,9 +222,10 @@ class NaiveCertificate {
         }
         found.push_back({"k", {s, t, a}, total});
         found.push_back({"l_r", {s, t, a}, magnitude(r_[s][a] - r_[t][a])});
-        found.push_back({"l_star", {s, t, a}, magnitude(q_star_[s][a] - q_star_[t][a])});
+        const Q apart = q_low_[s][a] - q_star_[t][a];
+        found.push_back({"l_star", {s, t, a}, bounds_ ? apart : magnitude(apart)});
         for (const auto& [name, at, x] : found) {
-          if (x == 0) continue;
+          if (x == 0 || (bounds_ && d == 0)) continue;
           if (!expect(d > 0, "states at distance 0 differ")) return false;
           quotients[name].push_back({at, x / d});
         }
@@ -213,8 +237,16 @@ class NaiveCertificate {
       const Json& given = c_["constants"][name];
       bool attained = most == 0 && given["at"].is_null();
       for (const auto& [at, x] : quotients[name]) attained = attained || (x == most && at == given["at"]);
-      if (!expect(number(given["value"]) == most && attained, name)) return false;
-      constant_[name] = most;
+      const Q x = number(given["value"]);
+      if (bounds_) {
+        bool proved = x == 0 && given["at"].is_null();
+        for (const auto& [at, quotient] : quotients[name])
+          proved = proved || (0 < x && x <= quotient && at == given["at"]);
+        if (!expect(proved, name)) return false;
+      } else if (!expect(x == most && attained, name)) {
+        return false;
+      }
+      constant_[name] = x;
     }
     Values all;
     for (const Values& row : r_) all.insert(all.end(), row.begin(), row.end());
@@ -232,6 +264,7 @@ class NaiveCertificate {
   }
 
   bool pairs() {
+    if (bounds_) return true;  // looked at with their rounds
     std::set<std::string> seen;
     for (const Json& pair : c_["pairs"]) {
       const std::vector<int> policy = pair["policy"], attack = pair["attack"];
@@ -247,6 +280,7 @@ class NaiveCertificate {
   }
 
   bool rounds() {
+    if (bounds_) return rounds_by_bounds();
     q_.assign(1, Table(n_, Values(m_)));
     std::vector<int> order;
     for (const int index : c_["rounds"]) {
@@ -265,6 +299,7 @@ class NaiveCertificate {
       if (!expect(pair["policy"] == Json(policy) && pair["attack"] == Json(attack), "policies of a round"))
         return false;
       q_.push_back(back(next));
+      x_low_ = x_high_ = next;
     }
     return expect(order.size() == c_["pairs"].size(), "a pair in no round");
   }
@@ -283,6 +318,7 @@ class NaiveCertificate {
   bool limit() {
     const Json& limit = c_["limit"];
     if (limit.is_null()) return true;
+    if (bounds_ || limit.contains("boxes")) return boxes();
     const int k = limit["period"];
     const Q r = number(limit["radius"]);
     if (!expect(r > 0, "radius")) return false;
@@ -392,7 +428,188 @@ class NaiveCertificate {
     return true;
   }
 
+  // ---- Enclosures ----
+
+  std::vector<int> candidates(const Table& low, const Table& high, const States& belief) const {
+    const auto least = [&](const Table& q, int a) {
+      Q worst = q[*belief.begin()][a];
+      for (const int state : belief) worst = std::min(worst, q[state][a]);
+      return worst;
+    };
+    std::vector<int> found;
+    for (int b = 0; b < m_; ++b) {
+      bool beaten = false;
+      for (int a = 0; a < m_; ++a) {
+        const Q v_low = least(low, a), v_high = least(high, b);
+        const bool first = tie_highest_ ? a > b : a < b;
+        beaten = beaten || (a != b && (v_low > v_high || (v_low == v_high && first)));
+      }
+      if (!beaten) found.push_back(b);
+    }
+    return found;
+  }
+  struct Choices {
+    std::vector<std::vector<int>> candidates;
+    std::vector<States> possible;
+    Values low, high;
+  };
+  Choices choices(const Table& low, const Table& high) const {
+    Choices all;
+    for (int t = 0; t < n_; ++t) all.candidates.push_back(candidates(low, high, ball_[t]));
+    for (int s = 0; s < n_; ++s) {
+      States possible;
+      std::optional<Q> least, most;
+      for (const int t : ball_[s]) {
+        std::optional<Q> most_of_t;
+        for (const int a : all.candidates[t]) {
+          possible.insert(a);
+          if (!least || low[s][a] < *least) least = low[s][a];
+          if (!most_of_t || high[s][a] > *most_of_t) most_of_t = high[s][a];
+        }
+        if (!most || *most_of_t < *most) most = most_of_t;
+      }
+      all.possible.push_back(possible);
+      all.low.push_back(*least);
+      all.high.push_back(*most);
+    }
+    return all;
+  }
+  bool between(const Values& below, const Values& above, const std::vector<States>& possible,
+               const std::vector<States>& provoked) {
+    const Table low = back(below), high = back(above);
+    for (int s = 0; s < n_; ++s) {
+      for (const int a : possible[s]) {
+        if (!expect(below[s] <= low[s][a], "below")) return false;
+      }
+      for (const int a : provoked[s]) {
+        if (!expect(above[s] >= high[s][a], "above")) return false;
+      }
+    }
+    return true;
+  }
+  std::vector<States> provoked(const Table& low, const Choices& all, const Values& most) const {
+    std::vector<States> found(n_);
+    for (int s = 0; s < n_; ++s) {
+      for (const int a : all.possible[s]) {
+        if (low[s][a] <= most[s]) found[s].insert(a);
+      }
+    }
+    return found;
+  }
+  Q rounded(const Q& x, bool up) const {
+    const Q scaled = x * Q(mpz_class(1) << c_["bits"].get<unsigned>());
+    mpz_class whole = scaled.get_num() / scaled.get_den();  // towards 0
+    if (up ? whole < scaled : whole > scaled) whole += up ? 1 : -1;
+    Q result(whole, mpz_class(1) << c_["bits"].get<unsigned>());
+    result.canonicalize();
+    return result;
+  }
+
+  /// A round by bounds or a phase of boxes, for the claims.
+  struct Enclosed {
+    int n;
+    bool first;
+    Values before_low, before_high;  // of Lo and Hi
+    Values low, below, above;
+  };
+
+  bool rounds_by_bounds() {
+    std::vector<Json> order;
+    for (std::size_t n = 0; n < c_["rounds"].size(); ++n) {
+      Table low(n_, Values(m_)), high = low;
+      if (n > 0) {
+        low = back(x_low_);
+        high = back(x_high_);
+      }
+      const Values before_low = x_low_, before_high = x_high_;
+      const Choices all = choices(low, high);
+      x_low_ = x_high_ = {};
+      for (int s = 0; s < n_; ++s) {
+        x_low_.push_back(rounded(all.low[s], false));
+        x_high_.push_back(rounded(all.high[s], true));
+      }
+      const std::vector<States> found = provoked(low, all, x_high_);
+      const std::size_t index = c_["rounds"][n];
+      const Json& pair = c_["pairs"][index];
+      if (!expect(pair["choices"] == Json(all.candidates) && pair["provoked"] == Json(found), "actions of a round"))
+        return false;
+      const Json key{all.candidates, found};
+      const bool first = std::find(order.begin(), order.end(), key) == order.end();
+      if (first) order.push_back(key);
+      if (!expect(order[index] == key, "pairs out of order")) return false;
+      const Values below = numbers(pair["below"]), above = numbers(pair["above"]);
+      if (!between(below, above, all.possible, found)) return false;
+      enclosed_.push_back({static_cast<int>(n), first, before_low, before_high, x_low_, below, above});
+    }
+    return expect(order.size() == c_["pairs"].size(), "a pair in no round");
+  }
+
+  bool boxes() {
+    const Json& list = c_["limit"]["boxes"];
+    const int rounds = static_cast<int>(c_["rounds"].size()), k = static_cast<int>(list.size());
+    for (int j = 0; j < k; ++j) {
+      const Values before_low = numbers(list[(j + k - 1) % k]["low"]),
+                   before_high = numbers(list[(j + k - 1) % k]["high"]);
+      const Table lo = back(before_low), hi = back(before_high);
+      const Values low = numbers(list[j]["low"]), high = numbers(list[j]["high"]);
+      const Values below = numbers(list[j]["below"]), above = numbers(list[j]["above"]);
+      for (int s = 0; s < n_ && j == 0; ++s) {
+        if (!expect(before_low[s] <= x_low_[s] && x_high_[s] <= before_high[s], "boxes, condition 1")) return false;
+      }
+      const Choices all = choices(lo, hi);
+      for (int s = 0; s < n_; ++s) {
+        if (!expect(low[s] <= all.low[s] && high[s] >= all.high[s], "boxes, condition 2")) return false;
+      }
+      if (!between(below, above, all.possible, provoked(lo, all, high))) return false;
+      enclosed_.push_back({rounds + j, true, before_low, before_high, low, below, above});
+    }
+    return expect(k > 0, "no boxes");
+  }
+
+  void spread(const std::string& claim, int n, const Values& v, const Values& w, const Q& factor) {
+    Values middle;
+    Q half = 0;
+    for (int s = 0; s < n_; ++s) {
+      middle.push_back((v[s] + w[s]) / 2);
+      half = std::max(half, Q((w[s] - v[s]) / 2));
+    }
+    const std::size_t before = instances_[claim].size();
+    lipschitz(claim, n, back(middle), 2 * g_ * half, factor);
+    for (std::size_t i = before; i < instances_[claim].size(); ++i) instances_[claim][i].proves = false;
+  }
+
+  void claims_of(const Enclosed& x, int rounds) {
+    const Q e2 = 2 * eps_ * g_, rest = 1 - g_;
+    const Json at{{"n", x.n}};
+    if (x.first) spread("lemma-1", x.n, x.below, x.above, of_print_);
+    if (x.n > 0) spread("lemma-1-iterates", x.n, x.before_low, x.before_high, of_rep_);
+    const Table hi = x.n == 0 ? Table(n_, Values(m_)) : back(x.before_high);
+    Values off(n_);
+    for (int s = 0; s < n_; ++s) {
+      if (ball_[s].size() > 1) off[s] = *std::max_element(hi[s].begin(), hi[s].end()) - x.low[s];
+    }
+    Table loss = back(off);
+    for (int s = 0; s < n_; ++s) {
+      for (int a = 0; a < m_; ++a) loss[s][a] -= r_[s][a];
+    }
+    const Table none(n_, Values(m_)), below = back(x.below);
+    each("lemma-2", at, loss, none, false, e2 * l_print_, false);
+    const bool phase = x.n >= rounds;
+    for (const auto& [claim, delta] : {std::pair<std::string, Q>("C", e2 * l_rep_), {"D", e2 * l_tv_}}) {
+      const Q now = finite_n(x.n, delta), at_last = (g_ * delta / rest + delta) / rest;
+      each(claim, at, q_star_, below, false, phase ? std::min(now, at_last) : now, false);
+    }
+    if (!phase) return;
+    each("theorem-1", at, q_star_, below, false, (1 + g_) / (rest * rest) * e2 * l_print_, false);
+    each("A", at, q_star_, below, false, (1 + g_) / (rest * rest) * e2 * l_sound_, false);
+    each("B", at, q_star_, below, false, e2 * l_sound_ / (rest * rest), false);
+  }
+
   bool test_time() {
+    if (bounds_) {
+      const Values below = numbers(c_["test_time"]["below"]);
+      return between(below, v_star_, choices(q_low_, q_star_).possible, std::vector<States>(n_));
+    }
     const std::vector<int> policy = maximin(q_star_);
     return expect(c_["test_time"]["policy"] == Json(policy), "test_time policy") &&
            expect(is_robust(numbers(c_["test_time"]["robust"]), policy), "test_time robust");
@@ -408,40 +625,45 @@ class NaiveCertificate {
       listed[{entry[0].get<int>(), entry[1].get<States>()}] = number(game["values"][i]);
     }
     if (!expect(listed.size() == game["positions"].size(), "positions twice")) return false;
+    const bool exact = !bounds_ && game["exact"] == true;
     std::set<Position> reached;
     std::vector<Position> open;
     const auto reach = [&](const Position& position) {
+      if (!exact && !listed.count(position)) return true;
       if (reached.insert(position).second) open.push_back(position);
       return expect(listed.count(position) == 1, "a position is missing");
     };
     for (int s = 0; s < n_; ++s) {
       for (const int t : ball_[s]) {
-        if (!reach({s, ball_[t]})) return false;
+        if (!expect(listed.count({s, ball_[t]}) == 1, "a start is missing") || !reach({s, ball_[t]})) return false;
       }
     }
     Q rho = 0;
     while (!open.empty()) {
       const auto [s, belief] = open.back();
       open.pop_back();
-      const int a = maximin(q_star_, belief);
-      Q value = r_[s][a];
-      for (int next = 0; next < n_; ++next) {
-        if (p_[s][a][next] == 0) continue;
-        std::optional<Q> worst;
-        for (const int t : ball_[next]) {
-          Position position{next, {}};
-          for (const int state : ball_[t]) {
-            for (const int member : belief) {
-              if (p_[member][a][state] > 0) position.second.insert(state);
-            }
-          }
-          if (!reach(position)) return false;
-          if (!worst || listed[position] < *worst) worst = listed[position];
-        }
-        value += g_ * p_[s][a][next] * *worst;
-      }
       const Q given = listed[{s, belief}];
-      if (!expect(game["exact"] == true ? given == value : given <= value, "belief value")) return false;
+      for (const int a : candidates(q_low_, q_star_, belief)) {
+        Q value = r_[s][a];
+        for (int next = 0; next < n_; ++next) {
+          if (p_[s][a][next] == 0) continue;
+          std::optional<Q> worst;
+          for (const int t : ball_[next]) {
+            Position position{next, {}};
+            for (const int state : ball_[t]) {
+              for (const int member : belief) {
+                if (p_[member][a][state] > 0) position.second.insert(state);
+              }
+            }
+            if (!reach(position)) return false;
+            const Q next_value =
+                listed.count(position) ? listed[position] : number(c_["constants"]["r_min"]) / (1 - g_);
+            if (!worst || next_value < *worst) worst = next_value;
+          }
+          value += g_ * p_[s][a][next] * *worst;
+        }
+        if (!expect(exact ? given == value : given <= value, "belief value")) return false;
+      }
       for (const int member : belief) rho = std::max(rho, near_.at({s, member}));
     }
     for (int s = 0; s < n_; ++s) {
@@ -478,15 +700,15 @@ class NaiveCertificate {
       }
     }
   }
-  void each(const std::string& claim, const Json& at, const Table& x, const Table& y, bool absolute, const Q& more,
-            const Q& right, bool proves) {
+  void each(const std::string& claim, const Json& at, const Table& x, const Table& y, bool absolute, const Q& right,
+            bool proves) {
     for (int s = 0; s < n_; ++s) {
       for (int a = 0; a < m_; ++a) {
         Json place = at;
         place["states"] = {s};
         place["action"] = a;
         const Q difference = x[s][a] - y[s][a];
-        instances_[claim].push_back({place, (absolute ? magnitude(difference) : difference) + more, right, proves});
+        instances_[claim].push_back({place, absolute ? magnitude(difference) : difference, right, proves});
       }
     }
   }
@@ -503,12 +725,10 @@ class NaiveCertificate {
     return most;
   }
   Q finite_n(int n, const Q& delta) const {
-    Q most = q_star_[0][0], least = most, decay = 1;
-    for (const Values& row : q_star_) {
-      for (const Q& x : row) {
-        most = std::max(most, x);
-        least = std::min(least, x);
-      }
+    Q most = q_low_[0][0], least = q_star_[0][0], decay = 1;
+    for (int s = 0; s < n_; ++s) {
+      for (const Q& x : q_low_[s]) most = std::max(most, x);
+      for (const Q& x : q_star_[s]) least = std::min(least, x);
     }
     for (int i = 0; i < n; ++i) decay *= g_;
     const Q start = std::max(Q(0), most) + std::max(Q(0), Q(-least));
@@ -517,9 +737,10 @@ class NaiveCertificate {
 
   bool claims() {
     const Q e2 = 2 * eps_ * g_, rest = 1 - g_;
-    const int rounds = static_cast<int>(q_.size()) - 1;
+    const int rounds = static_cast<int>(c_["rounds"].size());
+    for (const Enclosed& x : enclosed_) claims_of(x, rounds);
     std::set<int> met;
-    for (int n = 0; n < rounds; ++n) {
+    for (int n = 0; n < rounds && !bounds_; ++n) {
       const Json& pair = c_["pairs"][c_["rounds"][n].get<int>()];
       const Table robust = back(numbers(pair["robust"]));
       if (met.insert(c_["rounds"][n].get<int>()).second) {
@@ -527,13 +748,13 @@ class NaiveCertificate {
         lipschitz("lemma-1", n, robust, 0, of_print_);
       }
       lipschitz("lemma-1-iterates", n, q_[n], 0, of_rep_);
-      each("lemma-2", {{"n", n}}, greedy_backup(q_[n]), q_[n + 1], true, 0, e2 * l_print_, true);
+      each("lemma-2", {{"n", n}}, greedy_backup(q_[n]), q_[n + 1], true, e2 * l_print_, true);
       Values image;
       for (int s = 0; s < n_; ++s) image.push_back(q_star_[s][pair["policy"][pair["attack"][s].get<int>()].get<int>()]);
       instances_["lemma-3"].push_back(
           {{{"n", n}}, distance(q_[n + 1], back(image)), g_ * distance(q_[n], q_star_), true});
-      each("C", {{"n", n}}, q_star_, robust, false, 0, finite_n(n, e2 * l_rep_), true);
-      each("D", {{"n", n}}, q_star_, robust, false, 0, finite_n(n, e2 * l_tv_), true);
+      each("C", {{"n", n}}, q_star_, robust, false, finite_n(n, e2 * l_rep_), true);
+      each("D", {{"n", n}}, q_star_, robust, false, finite_n(n, e2 * l_tv_), true);
     }
     const int k = static_cast<int>(orbit_.size());
     std::set<std::string> unknown;
@@ -544,32 +765,44 @@ class NaiveCertificate {
       if (fixed_[j]) lipschitz("lemma-1", rounds + j, *fixed_[j], 0, of_print_);
       lipschitz("lemma-1-iterates", rounds + j, orbit_[j], 2 * g_ * delta_, of_rep_);
       if (j == 0) lipschitz("lemma-1-iterates", rounds, q_.back(), 0, of_rep_);
-      each("lemma-2", at, greedy_backup(orbit_[j]), orbit_[(j + 1) % k], true, 2 * g_ * delta_, e2 * l_print_,
-           g_ * delta_ == 0);
-      each("theorem-1", at, q_star_, fixed_[j] ? *fixed_[j] : low_[j], false, 0,
-           (1 + g_) / (rest * rest) * e2 * l_print_, fixed_[j].has_value());
-      each("A", at, q_star_, low_[j], false, 0, (1 + g_) / (rest * rest) * e2 * l_sound_, low_proves_[j]);
-      each("B", at, q_star_, low_[j], false, 0, e2 * l_sound_ / (rest * rest), low_proves_[j]);
+      const Table greedy = greedy_backup(orbit_[j]), &next = orbit_[(j + 1) % k];
+      for (int s = 0; s < n_; ++s) {
+        for (int a = 0; a < m_; ++a) {
+          Q misled = 0;
+          for (int t = 0; t < n_; ++t) misled += ball_[t].size() > 1 ? p_[s][a][t] : Q(0);
+          const Q added = 2 * g_ * delta_ * misled;
+          instances_["lemma-2"].push_back({{{"n", rounds + j}, {"states", {s}}, {"action", a}},
+                                           magnitude(greedy[s][a] - next[s][a]) + added,
+                                           e2 * l_print_,
+                                           added == 0});
+        }
+      }
+      each("theorem-1", at, q_star_, fixed_[j] ? *fixed_[j] : low_[j], false, (1 + g_) / (rest * rest) * e2 * l_print_,
+           fixed_[j].has_value());
+      each("A", at, q_star_, low_[j], false, (1 + g_) / (rest * rest) * e2 * l_sound_, low_proves_[j]);
+      each("B", at, q_star_, low_[j], false, e2 * l_sound_ / (rest * rest), low_proves_[j]);
       for (const auto& [claim, delta] : {std::pair<std::string, Q>("C", e2 * l_rep_), {"D", e2 * l_tv_}}) {
         const Q at_last = (g_ * delta / rest + delta) / rest;
-        each(claim, at, q_star_, low_[j], false, 0, std::min(finite_n(rounds + j, delta), at_last), low_proves_[j]);
+        each(claim, at, q_star_, low_[j], false, std::min(finite_n(rounds + j, delta), at_last), low_proves_[j]);
       }
     }
-    each("E", Json::object(), q_star_, back(numbers(c_["test_time"]["robust"])), false, 0,
+    each("E", Json::object(), q_star_, back(numbers(c_["test_time"][bounds_ ? "below" : "robust"])), false,
          e2 * constant_["l_star"] / rest, true);
     for (int s = 0; s < n_ && !c_["belief_game"].is_null(); ++s) {
       instances_["F"].push_back({{{"states", {s}}},
                                  v_star_[s] - belief_worst_[s],
                                  number(c_["belief_game"]["reach"]) * constant_["l_star"] / rest,
-                                 c_["belief_game"]["exact"] == true});
+                                 !bounds_ && c_["belief_game"]["exact"] == true});
     }
     for (const char* claim : {"lemma-1", "lemma-1-iterates"}) {
       if (instances_[claim].empty()) instances_[claim].push_back({Json::object(), 0, 0, true});
     }
-    if (k == 0) unknown = {"lemma-1", "lemma-1-iterates", "lemma-2", "theorem-1", "A", "B", "C", "D"};
+    if (c_["limit"].is_null()) unknown = {"lemma-1", "lemma-1-iterates", "lemma-2", "theorem-1", "A", "B", "C", "D"};
     if (c_["belief_game"].is_null()) unknown.insert("F");
     if (!expect(!c_["claims"].empty(), "no claims")) return false;
     for (const Json& entry : c_["claims"]) {
+      if (!expect(!bounds_ || (entry["claim"] != "lemma-3" && entry["verdict"] != "violated"), "by bounds"))
+        return false;
       if (entry["verdict"] == "undetermined") continue;
       const std::string name = entry["claim"];
       if (!expect(!unknown.count(name), name + " is not undetermined") || !entry_is_true(entry, instances_[name]))
@@ -593,7 +826,7 @@ class NaiveCertificate {
   }
 
   const Json& c_;
-  bool tie_highest_, l2_ = false;
+  bool tie_highest_, bounds_, l2_ = false;
   std::string what_;
   int n_ = 0, m_ = 0;
   Q g_, eps_;
@@ -601,8 +834,10 @@ class NaiveCertificate {
   std::vector<Table> p_;
   std::map<std::pair<int, int>, Q> near_, far_;  // of states at a finite distance
   std::vector<States> ball_;
-  Values v_star_, belief_worst_;
-  Table q_star_;
+  Values v_star_, belief_worst_;  // V*, or above it
+  Table q_star_, q_low_;          // back of it, and of what is below it
+  Values x_low_, x_high_;         // of x_n, at last of x_{N-1}
+  std::vector<Enclosed> enclosed_;
   std::map<std::string, Q> constant_;
   Q of_print_, of_rep_, l_print_, l_sound_, l_rep_, l_tv_, delta_;
   std::vector<Table> q_, orbit_, low_;

@@ -15,8 +15,8 @@ std::string edited(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-void expect_refused(const std::string& text, const std::string& start) {
-  const std::string line = refusal(text);
+void expect_refused(const std::string& text, const std::string& start, const checker::Limits& limits = {}) {
+  const std::string line = refusal(text, limits);
   EXPECT_EQ(line.substr(0, start.size()), start) << line;
   EXPECT_EQ(line.find('\n'), line.npos);
   EXPECT_LT(line.size(), 300U);
@@ -78,8 +78,14 @@ TEST(StrictJson, SizesAreBoundedBeforeAnythingIsMade) {
   std::istringstream endless(std::string(1 << 20, ' '));
   EXPECT_THROW(checker::check(endless, small), checker::Refused);
   small = {};
-  small.table_bits = 40;
-  EXPECT_NE(refusal(edited("\"states\":3", "\"states\":3"), small).find("bits each, expected less"), std::string::npos);
+  small.table_bits = 319;  // there are 5 members of balls
+  expect_refused(edited("\"states\":3", "\"states\":3"), "$.model.eps: balls that take too much memory", small);
+  small.table_bits = 400;
+  const std::string fine = edited("\"discount\":\"1/2\"", "\"discount\":\"1/1" + std::string(29, '0') + "\"");
+  EXPECT_NE(refusal(fine, small).find("bits each, expected less"), std::string::npos);
+  small = {};
+  small.work = 100;
+  expect_refused(edited("\"states\":3", "\"states\":3"), "$.rounds: more work than this checker takes on", small);
 }
 
 TEST(StrictJson, MembersAreThoseOfTheFormat) {
