@@ -77,8 +77,21 @@ class BoundsCertifier {
     if (is_new) {
       result_.pairs.push_back({round.choices, round.provoked, boxes_.enclose_pair(round.choices, round.provoked)});
       claims_.boxed_pair(n, result_.pairs.back().values);
+      count(round);
     }
     return entry->second;
+  }
+
+  /// What a campaign counts of a round.
+  void count(const RoundBox& round) {
+    const auto apart = [](const std::vector<Action>& x, const std::vector<Action>& y) {
+      return std::none_of(x.begin(), x.end(), [&](Action a) { return std::binary_search(y.begin(), y.end(), a); });
+    };
+    for (State s = 0; s < mdp_.states(); ++s) {
+      const auto& choices = round.choices[static_cast<std::size_t>(s)];
+      if (apart(choices, candidates(round.q, {&s, 1}, options_.tie))) result_.pessimism_changes_action = true;
+      if (apart(choices, round.provoked[static_cast<std::size_t>(s)])) result_.attack_changes_action = true;
+    }
   }
 
   /// The smallest period that the rounds have had for twice as long; 1 if none.

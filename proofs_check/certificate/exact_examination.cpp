@@ -65,6 +65,7 @@ Examination what_both_say(const Any& c) {
   e.iterations = static_cast<long>(c.rounds.size());
   e.pairs = static_cast<long>(c.pairs.size());
   e.largest_ball = c.largest_ball;
+  e.pessimism_changes_action = c.pessimism_changes_action;
   e.gap = std::numeric_limits<double>::quiet_NaN();
   if (c.belief_game) e.belief_positions = static_cast<long>(c.belief_game->positions.size());
   for (const CertifiedClaim& claim : c.claims) e.check(claim.id) = check_of(claim);
@@ -75,7 +76,6 @@ Examination what_both_say(const Any& c) {
 
 Examination examination_of(const Certificate& c) {
   Examination e = what_both_say(c);
-  e.pessimism_changes_action = c.pessimism_changes_action;
   e.attack_changes_action = std::any_of(c.pairs.begin(), c.pairs.end(), [](const CertifiedPair& p) {
     for (std::size_t s = 0; s < p.policies.policy.size(); ++s) {
       if (p.policies.policy[static_cast<std::size_t>(p.policies.attack[s])] != p.policies.policy[s]) return true;
@@ -94,6 +94,7 @@ Examination examination_of(const Certificate& c) {
 
 Examination examination_of(const BoundsCertificate& c) {
   Examination e = what_both_say(c);
+  e.attack_changes_action = c.attack_changes_action;
   if (c.limit) e.enclosed_from = e.iterations;
   return e;
 }
