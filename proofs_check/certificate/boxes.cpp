@@ -127,13 +127,11 @@ Integer Grid::up(double x) const {
 // ---- Rounds ----
 
 Boxes::Boxes(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls, const ScaledMdp& scaled, TieBreak tie)
-    : mdp_(mdp),
-      balls_(balls),
-      scaled_(scaled),
-      tie_(tie),
-      grid_(mdp),
-      rounded_(internal::rounded(mdp)),
-      all_(static_cast<std::size_t>(mdp.states())) {
+    : mdp_(mdp), balls_(balls), scaled_(scaled), tie_(tie), grid_(mdp), all_(static_cast<std::size_t>(mdp.states())) {
+  try {
+    rounded_ = internal::rounded(mdp);
+  } catch (const InputError&) {  // then bounds are as wide as they need to be
+  }
   for (auto& list : all_) {
     for (Action a = 0; a < mdp.actions(); ++a) list.push_back(a);
   }
@@ -205,8 +203,10 @@ ScaledValues Boxes::enclose(Player player, const Choices& choices, Side side) co
 
 std::vector<double> Boxes::near_values(Player player, const Choices& choices) const {
   try {
-    const auto solution = internal::iterate_policies(ControlProblem<double>(rounded_, player, choices), {});
-    if (solution.v.allFinite()) return {solution.v.begin(), solution.v.end()};
+    if (rounded_) {
+      const auto solution = internal::iterate_policies(ControlProblem<double>(*rounded_, player, choices), {});
+      if (solution.v.allFinite()) return {solution.v.begin(), solution.v.end()};
+    }
   } catch (const std::runtime_error&) {  // numbers that do not fit, or a solver that gave up: any start will do
   }
   return std::vector<double>(static_cast<std::size_t>(mdp_.states()), 0.0);
@@ -246,8 +246,8 @@ struct Boxes::Rounded {
 /// What follows the box, wider by the margin.
 Boxes::Rounded Boxes::widened_image(const Rounded& box, double margin) const {
   TableBox<double> q;
-  backup(rounded_, box.low, q.low);
-  backup(rounded_, box.high, q.high);
+  backup(*rounded_, box.low, q.low);
+  backup(*rounded_, box.high, q.high);
   const Choices choices = candidates(q, balls_, tie_);
   Rounded image{Values<double>(mdp_.states()), Values<double>(mdp_.states())};
   for (State s = 0; s < mdp_.states(); ++s) {
@@ -260,6 +260,7 @@ Boxes::Rounded Boxes::widened_image(const Rounded& box, double margin) const {
 
 std::optional<BoxLimit> Boxes::limit_after(const ValueBox& last, long period) const {
   constexpr int most_sweeps = 20'000;
+  if (!rounded_) return std::nullopt;
   const double gamma = static_cast<double>(mdp_.discount()), size = largest_value(mdp_);
   const double margin = size * std::max(1e-10 * (1 - gamma), 1e-13);
   std::vector<Rounded> phases(static_cast<std::size_t>(period));

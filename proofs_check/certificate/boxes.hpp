@@ -125,8 +125,8 @@ class Boxes {
   const ScaledMdp& scaled_;
   TieBreak tie_;
   Grid grid_;
-  FiniteMdp<double> rounded_;
-  Choices all_;  // actions, by state
+  std::optional<FiniteMdp<double>> rounded_;  // nothing where its numbers do not fit
+  Choices all_;                               // actions, by state
 };
 
 }  // namespace maximin

@@ -25,6 +25,15 @@ Metric<double> near_metric(const ExactGeometry& geometry) {
   return Metric<double>::from_shortest_paths(std::move(distances));
 }
 
+FiniteMdp<double> near_model(const FiniteMdp<Rational>& mdp) {
+  try {
+    return internal::rounded(mdp);
+  } catch (const InputError&) {
+    throw InputError(
+        "model: numbers beyond floating point, which bounds start from; expected smaller ones or --arith exact");
+  }
+}
+
 /// The constant with the place that was found, and the difference there over the distance; 0 where that is not above 0.
 template <class Difference>
 LipschitzConstant<Rational> exactly(const LipschitzConstant<double>& found, const ExactGeometry& geometry,
@@ -47,7 +56,7 @@ void refuse_infinite(const ModelConstants<double>& c) {
 Witnesses find_witnesses(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry, const ScaledTable& low,
                          const ScaledTable& high) {
   const Metric<double> metric = near_metric(geometry);
-  const ModelConstants<double> near = model_constants(internal::rounded(mdp), metric);
+  const ModelConstants<double> near = model_constants(near_model(mdp), metric);
   refuse_infinite(near);
   Witnesses w;
   ModelConstants<Rational>& c = w.constants;
