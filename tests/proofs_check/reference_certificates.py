@@ -14,6 +14,7 @@ import sys
 from fractions import Fraction
 
 UNIT = Fraction(1, 2**64)  # of the bounds on an l2 distance
+CLAIMS = ("lemma-1", "lemma-1-iterates", "lemma-2", "lemma-3", "theorem-1", "A", "B", "C", "D", "E", "F")
 
 
 def solve_linear(matrix, right):
@@ -34,14 +35,15 @@ def solve_linear(matrix, right):
 class Model:
     """A finite MDP with distances. `rows[s][a]` is {next: probability}; a distance None is infinite."""
 
-    def __init__(self, discount, eps, rewards, rows, points=None, norm=None, distances=None):
+    def __init__(self, discount, eps, rewards, rows, points=None, norm=None, distances=None, metric=None):
         self.g, self.eps = Fraction(discount), Fraction(eps)
         self.R = [[Fraction(x) for x in row] for row in rewards]
         self.P = [[{t: Fraction(p) for t, p in sorted(row.items()) if Fraction(p) != 0} for row in state] for state in rows]
         self.n, self.m = len(self.R), len(self.R[0])
         self.points = points and [[Fraction(x) for x in row] for row in points]
-        self.norm, self.distances = norm, distances
+        self.norm, self.metric = norm, metric
         self.S, self.A = range(self.n), range(self.m)
+        self.distances = distances or (self.hops() if metric == "hops" else None)
         self.low = [[self.distance(s, t)[0] for t in self.S] for s in self.S]
         self.high = [[self.distance(s, t)[1] for t in self.S] for s in self.S]
         self.ball = [[t for t in self.S if self.near(s, t)] for s in self.S]
@@ -51,6 +53,8 @@ class Model:
 
     def distance(self, s, t):
         """(d-, d+), or (None, None)."""
+        if self.metric == "discrete":
+            return Fraction(s != t), Fraction(s != t)
         if self.distances:
             d = self.distances[s][t]
             return (None, None) if d is None else (Fraction(d), Fraction(d))
@@ -60,6 +64,19 @@ class Model:
         q = sum((x * x for x in self.differences(s, t)), Fraction(0))
         below = math.isqrt(math.floor(q / UNIT**2)) * UNIT
         return below, below if below**2 == q else below + UNIT
+
+    def hops(self):
+        """By the algorithm of Floyd and Warshall."""
+        def step(s, t):
+            return any(t in row for row in self.P[s]) or any(s in row for row in self.P[t])
+
+        d = [[0 if s == t else 1 if step(s, t) else None for t in self.S] for s in self.S]
+        for u in self.S:
+            for s in self.S:
+                for t in self.S:
+                    if d[s][u] is not None and d[u][t] is not None and (d[s][t] is None or d[s][u] + d[u][t] < d[s][t]):
+                        d[s][t] = d[s][u] + d[u][t]
+        return d
 
     def near(self, s, t):
         if self.norm == "l2":
@@ -233,6 +250,10 @@ class Limit:
         first_occurrences = [c for i, c in enumerate(numbers) if c not in numbers[:i]]
         return self.delta <= self.radius and self.stable() and first_occurrences == sorted(set(numbers)) == list(range(len(set(numbers))))
 
+    def json(self):
+        return {"period": self.k, "radius": text(self.radius), "classes": self.classes, "orbit": text(self.orbit), "low": text(self.low),
+                "fixed": text(self.fixed)}
+
 
 FOUND = {}  # what find_limit found, by model and tie: the test asks for the same models again
 
@@ -281,47 +302,86 @@ def constants_of(model, Qstar):
     return best, min(rewards), max(rewards)
 
 
-def belief_game(model, Qstar, tie, slack=Fraction(0)):
-    """Positions, values (less `slack`) and reach."""
-    action = {}
+def next_positions(model, position, a):
+    """For each next state, the positions among which the attacker chooses when a is taken."""
+    s, M = position
+    seen = {u for m in M for u in model.P[m][a]}
+    return {u: [(u, tuple(x for x in model.ball[t] if x in seen)) for t in model.ball[u]] for u in model.P[s][a]}
 
-    def moves(s, M):
-        if M not in action:
-            action[M] = first(model.A, lambda a: min(Qstar[m][a] for m in M), max, tie)
-        a = action[M]
-        seen = {u for m in M for u in model.P[m][a]}
-        return a, {u: [(u, tuple(x for x in model.ball[t] if x in seen)) for t in model.ball[u]] for u in model.P[s][a]}
 
-    todo = [(s, tuple(model.ball[t])) for s in model.S for t in model.ball[s]]
-    found = set(todo)
+def starts(model):
+    return {(s, tuple(model.ball[t])) for s in model.S for t in model.ball[s]}
+
+
+def reached_positions(model, choices, listed=lambda position: True):
+    """All that are listed and reached by way of others; `choices(M)`: what the agent may take."""
+    found = starts(model)
+    todo = list(found)
     while todo:
-        for options in moves(*todo.pop())[1].values():
-            for position in options:
-                if position not in found:
-                    found.add(position)
-                    todo.append(position)
-    positions = sorted(found)
+        position = todo.pop()
+        for a in choices(position[1]):
+            for options in next_positions(model, position, a).values():
+                for option in options:
+                    if option not in found and listed(option):
+                        found.add(option)
+                        todo.append(option)
+    return sorted(found)
+
+
+def belief_game(model, choices, listed=lambda position: True):
+    """Positions and values, by policy iteration for the attacker, who minimizes; and chooses what the agent takes of `choices`.
+
+    Positions that are not listed have the value r_min/(1-g).
+    """
+    least = min(x for row in model.R for x in row) / (1 - model.g)
+    positions = reached_positions(model, choices, listed)
     index = {position: i for i, position in enumerate(positions)}
-    choice = {i: {u: 0 for u in moves(*position)[1]} for i, position in enumerate(positions)}
-    while True:  # policy iteration for the attacker, who minimizes
+    moves = [{a: next_positions(model, position, a) for a in choices(position[1])} for position in positions]
+    plan = [next((a, {u: options[0] for u, options in following.items()}) for a, following in move.items()) for move in moves]
+    while True:
         matrix = [[Fraction(i == j) for j in range(len(positions))] for i in range(len(positions))]
         right = []
-        for i, (s, M) in enumerate(positions):
-            a, options = moves(s, M)
+        for i, ((s, _), (a, chosen)) in enumerate(zip(positions, plan)):
             right.append(model.R[s][a])
             for u, p in model.P[s][a].items():
-                matrix[i][index[options[u][choice[i][u]]]] -= model.g * p
-        W = solve_linear(matrix, right)
-        stable = True
-        for i, position in enumerate(positions):
-            for u, options in moves(*position)[1].items():
-                values = [W[index[option]] for option in options]
-                if min(values) < values[choice[i][u]]:
-                    choice[i][u], stable = values.index(min(values)), False
-        if stable:
-            break
+                if chosen[u] in index:
+                    matrix[i][index[chosen[u]]] -= model.g * p
+                else:
+                    right[i] += model.g * p * least
+        W = dict(zip(positions, solve_linear(matrix, right)))
+        better = [best_reply(model, s, move, lambda x: W.get(x, least)) for (s, _), move in zip(positions, moves)]
+        if all(value == W[position] for position, (value, _) in zip(positions, better)):
+            return positions, [W[position] for position in positions]
+        plan = [old if value == W[position] else new for position, old, (value, new) in zip(positions, plan, better)]
+
+
+def best_reply(model, s, move, value):
+    """The least backup, and the action and next positions that have it."""
+    replies = []
+    for a, following in move.items():
+        chosen = {u: min(options, key=value) for u, options in following.items()}
+        replies.append((model.R[s][a] + model.g * sum(p * value(chosen[u]) for u, p in model.P[s][a].items()), (a, chosen)))
+    return min(replies, key=lambda reply: reply[0])
+
+
+def check_game(model, choices, positions, values, exact):
+    """Raises ValueError where this is no belief game as the page defines it."""
+    least = min(x for row in model.R for x in row) / (1 - model.g)
+    W = dict(zip(positions, values))
+    if any(position not in W for position in starts(model)):
+        raise ValueError("a start is missing")
+    if positions != reached_positions(model, choices, lambda position: exact or position in W):
+        raise ValueError("positions")
+    for position in positions:
+        move = {a: next_positions(model, position, a) for a in choices(position[1])}
+        backup = best_reply(model, position[0], move, lambda x: W.get(x, least))[0]
+        if W[position] > backup or (exact and W[position] < backup):
+            raise ValueError("values of the belief game")
+
+
+def game_json(model, positions, values):
     reach = max(model.low[s][m] for s, M in positions for m in M)
-    return positions, [w - slack for w in W], reach
+    return {"positions": [[s, list(M)] for s, M in positions], "values": text(values), "reach": text(reach)}
 
 
 def text(x):
@@ -331,7 +391,9 @@ def text(x):
 def model_json(model):
     result = {"format": "maximin-mdp", "version": 1, "states": model.n, "actions": model.m, "discount": text(model.g),
               "eps": text(model.eps)}
-    if model.distances:
+    if model.metric:
+        result["metric"] = model.metric
+    elif model.distances:
         result["distances"] = text(model.distances)
     else:
         result["points"], result["norm"] = text(model.points), model.norm
@@ -340,123 +402,242 @@ def model_json(model):
     return result
 
 
-def certificate(model, **options):
-    return examine(model, **options)[0]
+def surviving(model, lo, hi, states, tie):
+    """The candidates for a table between lo and hi, as the page defines them."""
+    low = [min(lo[m][a] for m in states) for a in model.A]
+    high = [min(hi[m][a] for m in states) for a in model.A]
+    return tuple(b for b in model.A if not any(
+        a != b and (low[a] > high[b] or (low[a] == high[b] and (a < b if tie == "lowest" else a > b))) for a in model.A))
 
 
-def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, repeat=1, classes=None, with_limit=True, with_beliefs=True,
-            belief_slack=Fraction(0)):
-    """The certificate of a model, and all instances of each claim, the least first.
+class Step:
+    """A round between lo and hi: candidates C(t), and x_n between low and high."""
 
-    `rounds`, `radius`, `repeat` (the orbit, that many times), `classes` and `belief_slack` ask for others that are as true.
-    """
-    S, A, g = model.S, model.A, model.g
-    Vstar = model.extreme_value([list(A)] * model.n, max)
-    Qstar = model.back(Vstar)
-    constants, r_min, r_max = constants_of(model, Qstar)
-    l_r, l_p, tv, l_star = (constants[name][0] for name in ("l_r", "l_p", "k", "l_star"))
-    size, span = max(abs(r_min), abs(r_max)), r_max - r_min
-    r_paper = size if reading == "corrected" else max(Fraction(0), r_max)
-    L_print, L_sound = (l_r + model.n * l_p * x / (1 - g) for x in (r_paper, size))
-    L_rep, L_tv = l_r + g * model.n * l_p * size / (1 - g), l_r + g * tv * span / (1 - g)
-    D_print, D_sound, D_rep, D_tv = (2 * model.eps * g * L for L in (L_print, L_sound, L_rep, L_tv))
+    def __init__(self, model, lo, hi, tie):
+        self.model, self.lo, self.hi = model, lo, hi
+        self.C = [surviving(model, lo, hi, model.ball[t], tie) for t in model.S]
+        self.low = [min(min(lo[s][a] for a in self.C[t]) for t in model.ball[s]) for s in model.S]
+        self.high = [min(max(hi[s][a] for a in self.C[t]) for t in model.ball[s]) for s in model.S]
 
-    N, orbit = find_limit(model, tie)
-    N, limit = rounds or N, None
-    tables, all_pairs = run(model, tie, N)
-    if orbit and with_limit:
-        limit = Limit(model, orbit * repeat, tables[N], tie, radius, classes)
-        if not limit.valid():
-            raise ValueError("not a limit after so many rounds, or with this radius")
-    pairs, indices, first_round = [], [], []
-    for n, pair in enumerate(all_pairs):
-        if pair not in pairs:
-            pairs.append(pair)
-            first_round.append(n)
-        indices.append(pairs.index(pair))
-    fixed = [model.value([policy[t] for t in attack]) for policy, attack in pairs]
-    robust = [robust_value(model, policy) for policy, _ in pairs]
-    test_policy = policy_of(model, Qstar, tie)
-    test_value = robust_value(model, test_policy)
+    def provoked(self, high):
+        return [tuple(sorted({a for t in self.model.ball[s] for a in self.C[t] if self.lo[s][a] <= high[s]})) for s in self.model.S]
 
-    jumps = {(s, t, a): [abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)) for u in S]
-             for s, t in model.pairs_of_states() for a in A}
+    def lost(self, low):
+        """The left sides of lemma-2."""
+        D = [Fraction(0) if self.model.ball[s] == [s] else max(self.hi[s]) - low[s] for s in self.model.S]
+        return [[self.model.g * sum(p * D[t] for t, p in row.items()) for row in state] for state in self.model.P]
 
-    # An instance is (at, left, right, whether it can prove a violation).
-    def lipschitz(X, n, factor, slack):
-        found = []
-        for s, t in model.pairs_of_states():
-            r = max([l_r * model.low[s][t]] + [abs(model.R[s][a] - model.R[t][a]) for a in A])
-            p = max([l_p * model.low[s][t]] + [jump for a in A for jump in jumps[s, t, a]])
-            for a in A:
-                added = slack * sum(jumps[s, t, a]) / 2 if slack else 0
-                found.append(({"n": n, "states": [s, t], "action": a}, abs(X[s][a] - X[t][a]) + added, r + factor * p, added == 0))
+
+def down(V, bits):
+    return [Fraction(math.floor(x * 2**bits), 2**bits) for x in V]
+
+
+def up(V, bits):
+    return [Fraction(math.ceil(x * 2**bits), 2**bits) for x in V]
+
+
+def less(model, V, bits):
+    """Values on the grid below V that a backup moves up, as V is a fixed point."""
+    return down([x - model.g / (1 - model.g) / 2**bits for x in V], bits)
+
+
+def more(model, V, bits):
+    return up([x + model.g / (1 - model.g) / 2**bits for x in V], bits)
+
+
+def all_shown(model, C):
+    return [sorted({a for t in model.ball[s] for a in C[t]}) for s in model.S]
+
+
+def enclose(model, C, A, bits):
+    """`below` and `above` of rounds with candidates C that provoke A."""
+    return less(model, model.extreme_value(all_shown(model, C), min), bits), more(model, model.extreme_value(A, max), bits)
+
+
+def is_below(model, V, C):
+    Q = model.back(V)
+    return all(V[s] <= Q[s][a] for s, actions in enumerate(all_shown(model, C)) for a in actions)
+
+
+def is_above(model, W, A):
+    Q = model.back(W)
+    return all(W[s] >= Q[s][a] for s in model.S for a in A[s])
+
+
+def make_boxes(model, tie, period, low, high, bits):
+    """Boxes around rounds that follow one between low and high: they grow until they close, on a grid."""
+    last = down(low, bits), up(high, bits)
+    while True:
+        tables = [last]
+        for _ in range(period):
+            step = Step(model, model.back(tables[-1][0]), model.back(tables[-1][1]), tie)
+            tables.append((down(step.low, bits), up(step.high, bits)))
+        grown = [min(both) for both in zip(last[0], tables[-1][0])], [max(both) for both in zip(last[1], tables[-1][1])]
+        if grown == last:
+            break
+        last = grown
+    tables[-1] = last
+    result = []
+    for j in range(period):
+        step = Step(model, model.back(tables[j][0]), model.back(tables[j][1]), tie)
+        below, above = enclose(model, step.C, step.provoked(tables[j + 1][1]), bits)
+        result.append({"low": tables[j + 1][0], "high": tables[j + 1][1], "below": below, "above": above})
+    return result
+
+
+class Boxes:
+    """The limit by boxes; raises ValueError unless they enclose what follows a round between low and high."""
+
+    def __init__(self, model, boxes, low, high, tie):
+        self.model, self.boxes = model, boxes
+        if any(u > x for u, x in zip(boxes[-1]["low"], low)) or any(w < x for w, x in zip(boxes[-1]["high"], high)):
+            raise ValueError("condition 1 of boxes")
+        self.steps = [Step(model, model.back(boxes[j - 1]["low"]), model.back(boxes[j - 1]["high"]), tie) for j in range(len(boxes))]
+        for step, box in zip(self.steps, boxes):
+            if any(u > x for u, x in zip(box["low"], step.low)) or any(w < x for w, x in zip(box["high"], step.high)):
+                raise ValueError("condition 2 of boxes")
+            if not is_below(model, box["below"], step.C) or not is_above(model, box["above"], step.provoked(box["high"])):
+                raise ValueError("condition 3 of boxes")
+
+    def instances(self, sides, N):
+        """Those of each claim in phases."""
+        found = {name: [] for name in CLAIMS}
+        for j, (box, step) in enumerate(zip(self.boxes, self.steps)):
+            before = self.boxes[j - 1]
+            found["lemma-1"] += sides.spread("lemma-1", box["below"], box["above"], N + j)
+            found["lemma-1-iterates"] += sides.spread("lemma-1-iterates", before["low"], before["high"], N + j)
+            found["lemma-2"] += sides.each(step.lost(box["low"]), N + j, sides.D_print, False)
+            X = self.model.back(box["below"])
+            for name in ("theorem-1", "A", "B", "C", "D"):
+                found[name] += sides.gap(X, N + j, sides.bound(name, N + j, True), False)
         return found
 
-    def gap(X, n, right, counts):
-        return [({"n": n, "states": [s], "action": a}, Qstar[s][a] - X[s][a], right, counts) for s in S for a in A]
+    def json(self):
+        return {"boxes": [{name: text(V) for name, V in box.items()} for box in self.boxes]}
 
-    def tstar(Q):
-        return model.back([max(row) for row in Q])
 
-    d0 = max([Fraction(0)] + [x for row in Qstar for x in row])
-    u0 = max([Fraction(0)] + [-x for row in Qstar for x in row])
+class Sides:
+    """The right sides, and instances (at, left, right, whether it can prove a violation).
 
-    def F(n, D):
-        return (g * (g**n * (d0 + u0) + D * (1 - g**n) / (1 - g)) + D) / (1 - g)
+    `constants`: their values by name; Q* (and V*) is between the tables low and high (and at most top).
+    """
 
-    def F_least(n, D):  # over n, n + k, n + 2k, ...
-        return min(F(n, D), (g * D / (1 - g) + D) / (1 - g))
+    def __init__(self, model, reading, constants, low, high, top):
+        self.model, self.high, self.top = model, high, top
+        g, n = model.g, model.n
+        rewards = [x for row in model.R for x in row]
+        self.l_r, self.l_p, tv, self.l_star = (constants[name] for name in ("l_r", "l_p", "k", "l_star"))
+        size, span = max(abs(x) for x in rewards), max(rewards) - min(rewards)
+        r_paper = size if reading == "corrected" else max(Fraction(0), max(rewards))
+        L_print, L_sound = (self.l_r + n * self.l_p * x / (1 - g) for x in (r_paper, size))
+        L_rep, L_tv = self.l_r + g * n * self.l_p * size / (1 - g), self.l_r + g * tv * span / (1 - g)
+        self.D_print, self.D_sound, self.D_rep, self.D_tv = (2 * model.eps * g * L for L in (L_print, L_sound, L_rep, L_tv))
+        self.factor = {"lemma-1": n * r_paper / (1 - g), "lemma-1-iterates": g * n * size / (1 - g)}
+        d0 = max([Fraction(0)] + [x for row in low for x in row])
+        u0 = max([Fraction(0)] + [-x for row in high for x in row])
+        self.start = d0 + u0
+        self.jumps = {(s, t, a): [abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)) for u in model.S]
+                      for s, t in model.pairs_of_states() for a in model.A}
 
-    nothing = [({}, Fraction(0), Fraction(0), True)]
-    phases = range(limit.k if limit else 0)
-    real = [limit.k == 1 or limit.single[j] for j in phases]  # low_j is the value of a pair
-    paper_factor, sharp_factor = (1 + g) / (1 - g)**2, 1 / (1 - g)**2
-    instances = {}
-    if limit:
-        delta, k = limit.delta, limit.k
-        low, ours = [model.back(V) for V in limit.low], [V and model.back(V) for V in limit.fixed]
-        if all(ours) and all(real):
-            X = [(back, first_round[i]) for i in range(len(pairs)) for back in (model.back(fixed[i]), model.back(robust[i]))]
-            X += [(back, N + j) for j in phases for back in (low[j], ours[j])]
-            instances["lemma-1"] = sum((lipschitz(back, n, model.n * r_paper / (1 - g), 0) for back, n in X), []) or nothing
-        factor = g * model.n * size / (1 - g)
-        iterates = [(tables[n], n, 0) for n in range(N + 1)] + [(limit.Q[j], N + j, 2 * g * delta) for j in phases]
-        instances["lemma-1-iterates"] = sum((lipschitz(X, n, factor, slack) for X, n, slack in iterates), []) or nothing
-        loss = [(tstar(tables[n]), tables[n + 1], n, Fraction(0), True) for n in range(N)]
-        loss += [(tstar(limit.Q[j]), limit.Q[(j + 1) % k], N + j, 2 * g * delta, g * delta == 0) for j in phases]
-        instances["lemma-2"] = [({"n": n, "states": [s], "action": a}, abs(X[s][a] - Y[s][a]) + extra, D_print, counts)
-                                for X, Y, n, extra, counts in loss for s in S for a in A]
-    instances["lemma-3"] = []
-    for n in range(N):
-        policy, attack = all_pairs[n]
-        step = model.back([Qstar[s][policy[attack[s]]] for s in S])
-        instances["lemma-3"].append(({"n": n}, far(tables[n + 1], step), g * far(tables[n], Qstar), True))
-    if limit:
-        instances["theorem-1"] = sum((gap(ours[j] or low[j], N + j, paper_factor * D_print, bool(ours[j])) for j in phases), [])
-        instances["A"] = sum((gap(low[j], N + j, paper_factor * D_sound, real[j]) for j in phases), [])
-        instances["B"] = sum((gap(low[j], N + j, sharp_factor * D_sound, real[j]) for j in phases), [])
-        for name, D in (("C", D_rep), ("D", D_tv)):
-            instances[name] = sum((gap(model.back(robust[indices[n]]), n, F(n, D), True) for n in range(N)), [])
-            instances[name] += sum((gap(low[j], N + j, F_least(N + j, D), real[j]) for j in phases), [])
-    X = model.back(test_value)
-    instances["E"] = [({"states": [s], "action": a}, Qstar[s][a] - X[s][a], 2 * model.eps * g * l_star / (1 - g), True)
-                      for s in S for a in A]
-    game = None
-    if with_beliefs:
-        positions, W, reach = belief_game(model, Qstar, tie, belief_slack)
-        exact = belief_slack == 0
-        game = {"positions": [[s, list(M)] for s, M in positions], "values": text(W), "reach": text(reach), "exact": exact}
-        at = dict(zip(positions, W))
-        instances["F"] = [({"states": [s]}, Vstar[s] - min(at[s, tuple(model.ball[t])] for t in model.ball[s]),
-                           reach * l_star / (1 - g), exact) for s in S]
+    def lipschitz(self, name, X, n, slack=Fraction(0)):
+        model, found = self.model, []
+        for s, t in model.pairs_of_states():
+            r = max([self.l_r * model.low[s][t]] + [abs(model.R[s][a] - model.R[t][a]) for a in model.A])
+            p = max([self.l_p * model.low[s][t]] + [jump for a in model.A for jump in self.jumps[s, t, a]])
+            for a in model.A:
+                added = slack * sum(self.jumps[s, t, a]) / 2 if slack else 0
+                found.append(({"n": n, "states": [s, t], "action": a}, abs(X[s][a] - X[t][a]) + added,
+                              r + self.factor[name] * p, added == 0))
+        return found
 
+    def spread(self, name, V, W, n):
+        middle = [(x + y) / 2 for x, y in zip(V, W)]
+        half = max(y - x for x, y in zip(V, W)) / 2
+        return [(*x[:3], False) for x in self.lipschitz(name, self.model.back(middle), n, 2 * self.model.g * half)]
+
+    def each(self, lefts, n, right, counts):
+        """One instance for each state and action; counts as a whole or each."""
+        return [({**({} if n is None else {"n": n}), "states": [s], "action": a}, lefts[s][a], right,
+                 counts if isinstance(counts, bool) else counts[s][a]) for s in self.model.S for a in self.model.A]
+
+    def gap(self, X, n, right, counts):
+        return self.each([[x - y for x, y in zip(*rows)] for rows in zip(self.high, X)], n, right, counts)
+
+    def bound(self, name, n, phase):
+        """The right side of theorem-1, A, B, C or D."""
+        g = self.model.g
+        if name in ("theorem-1", "A", "B"):
+            return {"theorem-1": (1 + g) * self.D_print, "A": (1 + g) * self.D_sound, "B": self.D_sound}[name] / (1 - g)**2
+        D = self.D_rep if name == "C" else self.D_tv
+        now = (g * (g**n * self.start + D * (1 - g**n) / (1 - g)) + D) / (1 - g)
+        return min(now, (g * D / (1 - g) + D) / (1 - g)) if phase else now
+
+
+def tstar(model, Q):
+    return model.back([max(row) for row in Q])
+
+
+def round_instances(sides, tables, all_pairs, pairs, fixed, robust):
+    """Of rounds n < N; tables has Q_N as well."""
+    model, found = sides.model, {name: [] for name in CLAIMS}
+    for i, pair in enumerate(pairs):
+        for V in (fixed[i], robust[i]):
+            found["lemma-1"] += sides.lipschitz("lemma-1", model.back(V), all_pairs.index(pair))
+    for n, pair in enumerate(all_pairs):
+        found["lemma-1-iterates"] += sides.lipschitz("lemma-1-iterates", tables[n], n)
+        lefts = [[abs(x - y) for x, y in zip(*rows)] for rows in zip(tstar(model, tables[n]), tables[n + 1])]
+        found["lemma-2"] += sides.each(lefts, n, sides.D_print, True)
+        policy, attack = pair
+        step = model.back([sides.high[s][policy[attack[s]]] for s in model.S])
+        found["lemma-3"].append(({"n": n}, far(tables[n + 1], step), model.g * far(tables[n], sides.high), True))
+        for name in ("C", "D"):
+            found[name] += sides.gap(model.back(robust[pairs.index(pair)]), n, sides.bound(name, n, False), True)
+    return found
+
+
+def orbit_instances(sides, limit, N):
+    """Of phases; those of lemma-1 are None where they do not decide it."""
+    model, k, found = sides.model, limit.k, {name: [] for name in CLAIMS}
+    low, ours = [model.back(V) for V in limit.low], [V and model.back(V) for V in limit.fixed]
+    real = [k == 1 or limit.single[j] for j in range(k)]  # low_j is the value of a pair
+    several = [[sum(p for t, p in row.items() if len(model.ball[t]) > 1) for row in state] for state in model.P]
+    slack = 2 * model.g * limit.delta
+    found["lemma-1-iterates"] += sides.lipschitz("lemma-1-iterates", limit.table, N)
+    for j in range(k):
+        found["lemma-1-iterates"] += sides.lipschitz("lemma-1-iterates", limit.Q[j], N + j, slack)
+        lefts = [[abs(x - y) + slack * m for x, y, m in zip(*rows)]
+                 for rows in zip(tstar(model, limit.Q[j]), limit.Q[(j + 1) % k], several)]
+        found["lemma-2"] += sides.each(lefts, N + j, sides.D_print, [[slack * m == 0 for m in row] for row in several])
+        found["theorem-1"] += sides.gap(ours[j] or low[j], N + j, sides.bound("theorem-1", N + j, True), bool(ours[j]))
+        for name in ("A", "B", "C", "D"):
+            found[name] += sides.gap(low[j], N + j, sides.bound(name, N + j, True), real[j])
+        for X in (low[j], ours[j] or low[j]):
+            found["lemma-1"] += sides.lipschitz("lemma-1", X, N + j)
+    if not all(ours) or not all(real):
+        found["lemma-1"] = None
+    return found
+
+
+def collect(model, early, late, others):
+    """{claim: instances}, without those that can only be undetermined. `late`: of phases, or None."""
+    found = dict(others)
+    for name in CLAIMS[:9]:
+        if name == "lemma-3":
+            found[name] = early[name]
+        elif late and late[name] is not None:
+            found[name] = early[name] + late[name]
+            if name in CLAIMS[:2] and not model.pairs_of_states():
+                found[name] = [({}, Fraction(0), Fraction(0), True)]
+    return {name: found[name] for name in CLAIMS if found.get(name)}
+
+
+def claims_of(model, instances, names, exact=True):
+    """The entries of `claims`; sorts the instances, the least first, and leaves those that count."""
     claims = []
-    for name in ("lemma-1", "lemma-1-iterates", "lemma-2", "lemma-3", "theorem-1", "A", "B", "C", "D", "E", "F"):
+    for name in names:
         found = instances.get(name, [])
-        failing = [x for x in found if x[1] > x[2]]
-        proofs = [x for x in found if x[3] and model.norm != "l2"]
-        if found and not failing:
+        proofs = [x for x in found if x[3] and model.norm != "l2" and exact]
+        if found and all(x[1] <= x[2] for x in found):
             verdict = "holds"
         elif any(x[1] > x[2] for x in proofs):
             verdict, found = "violated", proofs
@@ -466,17 +647,185 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
         instances[name] = found = sorted(found, key=lambda x: x[2] - x[1])
         at, left, right, _ = found[0]
         claims.append({"claim": name, "verdict": verdict, "left": text(left), "right": text(right), "at": at})
+    return claims
 
+
+def certificate(model, **options):
+    return examine(model, **options)[0]
+
+
+def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, repeat=1, classes=None, with_limit=True, with_beliefs=True,
+            belief_slack=Fraction(0), period=None, bits=12, boxes=None, listed=None, game=None):
+    """The certificate of a model, and all instances of each claim, the least first.
+
+    `rounds`, `radius`, `repeat` (the orbit, that many times), `classes` and `belief_slack` ask for others that are as true.
+    `period` asks for a limit by so many boxes, on a grid of 2^-bits, `boxes` for these; `listed` tells which positions to list
+    of a belief game that is not exact, `game` is (positions, values) of such a one.
+    """
+    Vstar = model.extreme_value([list(model.A)] * model.n, max)
+    Qstar = model.back(Vstar)
+    constants, r_min, r_max = constants_of(model, Qstar)
+    sides = Sides(model, reading, {name: value for name, (value, _) in constants.items()}, Qstar, Qstar, Vstar)
+    orbit, limit = None, None
+    if not (period or boxes):
+        N, orbit = find_limit(model, tie)
+        rounds = rounds or N
+    tables, all_pairs = run(model, tie, rounds)
+    if period or boxes:
+        policy, attack = all_pairs[-1]
+        x = [tables[-2][s][policy[attack[s]]] for s in model.S]
+        limit = Boxes(model, boxes or make_boxes(model, tie, period, x, x, bits), x, x, tie)
+        late = limit.instances(sides, rounds)
+    elif orbit and with_limit:
+        limit = Limit(model, orbit * repeat, tables[rounds], tie, radius, classes)
+        if not limit.valid():
+            raise ValueError("not a limit after so many rounds, or with this radius")
+        late = orbit_instances(sides, limit, rounds)
+    pairs = sorted(set(all_pairs), key=all_pairs.index)
+    fixed = [model.value([policy[t] for t in attack]) for policy, attack in pairs]
+    robust = [robust_value(model, policy) for policy, _ in pairs]
+    test_policy = policy_of(model, Qstar, tie)
+    test_value = robust_value(model, test_policy)
+
+    def choices(M):
+        return [first(model.A, lambda a: min(Qstar[m][a] for m in M), max, tie)]
+
+    others = {"E": sides.gap(model.back(test_value), None, 2 * model.eps * model.g * sides.l_star / (1 - model.g), True)}
+    the_game = None
+    if with_beliefs:
+        exact = not (belief_slack or listed or game)
+        positions, W = game or belief_game(model, choices, listed or (lambda position: True))
+        W = [w - belief_slack for w in W]
+        check_game(model, choices, positions, W, exact)
+        the_game = {**game_json(model, positions, W), "exact": exact}
+        others["F"] = belief_instances(sides, positions, W, exact)
+    early = round_instances(sides, tables, all_pairs, pairs, fixed, robust)
+    instances = collect(model, early, late if limit else None, others)
     result = {"format": "maximin-certificate", "version": 1, "model": model_json(model), "reading": reading, "tie": tie,
-              "constants": {**{name: {"value": text(x), "at": at} for name, (x, at) in constants.items()},
-                            "r_min": text(r_min), "r_max": text(r_max)},
-              "optimal": text(Vstar),
+              "constants": constants_json(constants, r_min, r_max), "optimal": text(Vstar),
               "pairs": [{"policy": list(policy), "attack": list(attack), "fixed": text(f), "robust": text(w)}
                         for (policy, attack), f, w in zip(pairs, fixed, robust)],
-              "rounds": indices,
-              "limit": limit and {"period": limit.k, "radius": text(limit.radius), "classes": limit.classes, "orbit": text(limit.orbit),
-                                  "low": text(limit.low), "fixed": text(limit.fixed)},
-              "test_time": {"policy": test_policy, "robust": text(test_value)}, "belief_game": game, "claims": claims}
+              "rounds": [pairs.index(pair) for pair in all_pairs], "limit": limit and limit.json(),
+              "test_time": {"policy": test_policy, "robust": text(test_value)}, "belief_game": the_game,
+              "claims": claims_of(model, instances, CLAIMS)}
+    return result, instances
+
+
+def constants_json(constants, r_min, r_max):
+    return {**{name: {"value": text(x), "at": at} for name, (x, at) in constants.items()}, "r_min": text(r_min), "r_max": text(r_max)}
+
+
+def belief_instances(sides, positions, values, exact):
+    model, at = sides.model, dict(zip(positions, values))
+    reach = max(model.low[s][m] for s, M in positions for m in M)
+    return [({"states": [s]}, sides.top[s] - min(at[s, tuple(model.ball[t])] for t in model.ball[s]),
+             reach * sides.l_star / (1 - model.g), exact) for s in model.S]
+
+
+def bounded_rounds(model, tie, count, bits):
+    """Steps of the rounds n < count, and what their x_n are between."""
+    lo = hi = [[Fraction(0)] * model.m for _ in model.S]
+    steps, between = [], []
+    for _ in range(count):
+        steps.append(Step(model, lo, hi, tie))
+        between.append((down(steps[-1].low, bits), up(steps[-1].high, bits)))
+        lo, hi = map(model.back, between[-1])
+    return steps, between
+
+
+def lower_constants(model, low, high, bits):
+    """The largest quotients, with states in either order, rounded down."""
+    best = {name: (Fraction(0), None) for name in ("l_r", "l_p", "k", "l_star")}
+    for s in model.S:
+        for t in model.S:
+            if not model.high[s][t]:
+                continue
+            for a in model.A:
+                jumps = [abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)) for u in model.S]
+                found = [("l_r", abs(model.R[s][a] - model.R[t][a]), [s, t, a]), ("k", Fraction(sum(jumps)) / 2, [s, t, a]),
+                         ("l_star", low[s][a] - high[t][a], [s, t, a])] + [("l_p", jump, [s, t, a, u]) for u, jump in enumerate(jumps)]
+                for name, difference, at in found:
+                    [value] = down([difference / model.high[s][t]], bits)
+                    if value > 0 and value >= best[name][0]:  # of equals the last: with t < s
+                        best[name] = (value, at)
+    return best
+
+
+def bounds_certificate(model, reading="corrected", tie="lowest", rounds=8, bits=12, period=1, with_beliefs=True, listed=lambda position: True):
+    """A certificate by bounds, and its instances; all tables on a grid of 2^-bits. `period` 0: no limit."""
+    Vstar = model.extreme_value([list(model.A)] * model.n, max)
+    V, W = less(model, Vstar, bits), more(model, Vstar, bits)
+    low, high = model.back(V), model.back(W)
+    steps, between = bounded_rounds(model, tie, rounds, bits)
+    pairs = []
+    for step, (_, x) in zip(steps, between):
+        if (step.C, step.provoked(x)) not in pairs:
+            pairs.append((step.C, step.provoked(x)))
+    free = {"constants": lower_constants(model, low, high, bits), "low": V, "high": W, "bits": bits, "rounds": rounds,
+            "pairs": [enclose(model, C, A, bits) for C, A in pairs],
+            "boxes": make_boxes(model, tie, period, *between[-1], bits) if period else None,
+            "test": less(model, model.extreme_value(all_shown(model, Step(model, low, high, tie).C), min), bits), "game": None}
+    if with_beliefs:
+        positions, values = belief_game(model, lambda M: surviving(model, low, high, M, tie), listed)
+        free["game"] = positions, less(model, values, bits)
+    return examine_bounds(model, reading, tie, free)
+
+
+def check_free(model, tie, free, low, high):
+    """Raises ValueError where constants or optimal values of `free` are not bounds."""
+    for name, (value, at) in free["constants"].items():
+        if value == 0 and at is None:
+            continue
+        s, t, a, *u = at
+        jumps = [abs(model.P[s][a].get(u, 0) - model.P[t][a].get(u, 0)) for u in model.S]
+        difference = {"l_r": abs(model.R[s][a] - model.R[t][a]), "k": Fraction(sum(jumps)) / 2, "l_star": low[s][a] - high[t][a],
+                      "l_p": jumps[u[0]] if u else None}[name]
+        if value <= 0 or not model.high[s][t] or difference / model.high[s][t] < value:
+            raise ValueError(f"constant {name}")
+    if any(x > max(row) for x, row in zip(free["low"], low)) or any(x < max(row) for x, row in zip(free["high"], high)):
+        raise ValueError("optimal")
+    if not is_below(model, free["test"], Step(model, low, high, tie).C):
+        raise ValueError("test_time")
+
+
+def examine_bounds(model, reading, tie, free):
+    """The certificate by bounds with these freely chosen numbers, and its instances; raises ValueError where they are wrong."""
+    low, high = model.back(free["low"]), model.back(free["high"])
+    check_free(model, tie, free, low, high)
+    sides = Sides(model, reading, {name: value for name, (value, _) in free["constants"].items()}, low, high, free["high"])
+    N, early = free["rounds"], {name: [] for name in CLAIMS}
+    steps, between = bounded_rounds(model, tie, N, free["bits"])
+    keys = [(step.C, step.provoked(x)) for step, (_, x) in zip(steps, between)]
+    pairs = [key for n, key in enumerate(keys) if key not in keys[:n]]
+    if len(pairs) != len(free["pairs"]):
+        raise ValueError("number of pairs")
+    for n, (step, key) in enumerate(zip(steps, keys)):
+        V, W = free["pairs"][pairs.index(key)]
+        if not is_below(model, V, step.C) or not is_above(model, W, key[1]):
+            raise ValueError("values of a pair")
+        if key not in keys[:n]:
+            early["lemma-1"] += sides.spread("lemma-1", V, W, n)
+        if n:
+            early["lemma-1-iterates"] += sides.spread("lemma-1-iterates", *between[n - 1], n)
+        early["lemma-2"] += sides.each(step.lost(between[n][0]), n, sides.D_print, False)
+        for name in ("C", "D"):
+            early[name] += sides.gap(model.back(V), n, sides.bound(name, n, False), False)
+    limit = free["boxes"] and Boxes(model, free["boxes"], *between[-1], tie)
+    others = {"E": sides.gap(model.back(free["test"]), None, 2 * model.eps * model.g * sides.l_star / (1 - model.g), False)}
+    if free["game"]:
+        positions, values = free["game"]
+        check_game(model, lambda M: surviving(model, low, high, M, tie), positions, values, False)
+        others["F"] = belief_instances(sides, positions, values, False)
+    instances = collect(model, early, limit and limit.instances(sides, N), others)
+    rewards = [x for row in model.R for x in row]
+    result = {"format": "maximin-bounds", "version": 1, "model": model_json(model), "reading": reading, "tie": tie,
+              "constants": constants_json(free["constants"], min(rewards), max(rewards)),
+              "optimal": {"low": text(free["low"]), "high": text(free["high"])}, "bits": free["bits"],
+              "pairs": [{"choices": [list(x) for x in C], "provoked": [list(x) for x in A], "below": text(V), "above": text(W)}
+                        for (C, A), (V, W) in zip(pairs, free["pairs"])],
+              "rounds": [pairs.index(key) for key in keys], "limit": limit and limit.json(), "test_time": {"below": text(free["test"])},
+              "belief_game": game_json(model, *free["game"]) if free["game"] else None,
+              "claims": claims_of(model, instances, [name for name in CLAIMS if name != "lemma-3"], exact=False)}
     return result, instances
 
 
@@ -544,6 +893,12 @@ def reference():
                    distances=[[0 if s == t else None for t in range(5)] for s in range(5)])
     # (0,0) and (1,0) have the same reward and stay where they are, but in round 0 action 1 is better in 0: no one class for ever.
     late = Model(half, 0, [[1, "3/2"], [1, 0], [0, 0]], sure([0, 2], [1, 2], [2, 2]), points=[[0], [1], [2]], norm="l1")
+    # Hops are of both directions, and do not lead everywhere; in the ball of 1 are 0 and 2, which it cannot reach and can.
+    hops = Model("3/4", 1, [[1, 0], ["1/2", 2], [0, "-1/3"], [3, 1]],
+                 [[{1: 1}, {0: half, 1: half}], [{2: "1/3", 1: "2/3"}, {1: 1}], [{2: 1}, {2: 1}], [{3: 1}, {3: 1}]], metric="hops")
+    discrete = Model("2/3", 1, [[1, 0], [0, 2], ["-1/2", "1/3"]], [[{0: half, 1: half}, {2: 1}], [{1: 1}, {0: "1/4", 2: "3/4"}], [{2: 1}, {0: 1}]],
+                     metric="discrete")
+    random_six = random_model(1, 6, 2, Fraction(1, 2), 1)
     greedy = Model(0, 1, [[1, 2], [2, 0]], sure([0, 1], [1, 0]), points=[[0], [1]], norm="l1")
     return {
         "one_sided_corrected": certificate(one_sided),
@@ -573,7 +928,30 @@ def reference():
         "late": certificate(late),
         "undecided": certificate(chain, rounds=2, with_limit=False, with_beliefs=False),
         "lower_bound": certificate(one_sided, belief_slack=Fraction(1, 8)),
-        "random_six": certificate(random_model(1, 6, 2, Fraction(1, 2), 1)),
+        "random_six": certificate(random_six),
+        "hops": certificate(hops),
+        "discrete": certificate(discrete),
+        "some_positions": certificate(chain, listed=lambda position: sum(position[1]) % 2 == 0),
+        "boxes_cycle": certificate(cycle, rounds=31, period=3),
+        "boxes_cycle_one": certificate(cycle, rounds=20, period=1, tie="highest"),
+        "boxes_paper": certificate(one_sided, reading="paper", rounds=6, period=1, belief_slack=Fraction(1, 8)),
+        "boxes_plane_l2": certificate(plane, rounds=9, period=2, bits=6),
+        "boxes_single": certificate(single, rounds=2, period=1),
+        "boxes_random": certificate(random_six, rounds=12, period=1),
+        "boxes_wide": certificate(random_six, rounds=2, period=1, bits=1),
+        "bounds_chain": bounds_certificate(chain)[0],
+        "bounds_cycle": bounds_certificate(cycle, rounds=31, period=3)[0],
+        "bounds_cycle_paper": bounds_certificate(cycle, rounds=9, reading="paper", tie="highest")[0],
+        "bounds_plane_l2": bounds_certificate(plane, rounds=5, period=2)[0],
+        "bounds_twins": bounds_certificate(twins, rounds=4)[0],
+        "bounds_islands": bounds_certificate(islands, listed=lambda position: position[0] != 3)[0],
+        "bounds_blind": bounds_certificate(blind, rounds=3)[0],
+        "bounds_single": bounds_certificate(single, rounds=1, bits=0)[0],
+        "bounds_hops": bounds_certificate(hops, rounds=4, bits=20)[0],
+        "bounds_negative": bounds_certificate(negative, reading="paper", rounds=2, bits=3)[0],
+        "bounds_random": bounds_certificate(random_six, rounds=6, bits=4)[0],
+        "bounds_undecided": bounds_certificate(pit, period=0, with_beliefs=False)[0],
+        "bounds_pit": bounds_certificate(pit, rounds=12)[0],
     }
 
 
