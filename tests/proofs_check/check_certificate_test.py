@@ -265,6 +265,70 @@ def mutants(document, rng, most):
         parent[key] = value
 
 
+def quiet(document):
+    """A certificate that claims nothing: what is refused of it is not refused for its claims."""
+    return dict(document, claims=[{"claim": "E", "verdict": "undetermined"}])
+
+
+def find(document, path):
+    """The container and the key of a place such as limit.boxes[0].low[2]."""
+    keys = [int(key) if key.isdigit() else key for key in re.findall(r"\w+", path)]
+    for key in keys[:-1]:
+        document = document[key]
+    return document, keys[-1]
+
+
+def free_numbers(document):
+    """(path, sign) of the numbers that may be chosen; sign: in which direction they can be wrong."""
+    tables = [("optimal.low", 1), ("optimal.high", -1), ("test_time.below", 1)] if document["format"] == "maximin-bounds" else []
+    if tables:
+        yield from ((f"constants.{name}.value", 1) for name in ("l_r", "l_p", "k", "l_star") if document["constants"][name]["at"])
+        tables += [(f"pairs[{i}].{name}", sign) for i in range(len(document["pairs"])) for name, sign in (("below", 1), ("above", -1))]
+    if document["limit"] and "boxes" in document["limit"]:
+        tables += [(f"limit.boxes[{j}].{name}", sign) for j in range(len(document["limit"]["boxes"]))
+                   for name, sign in (("low", 1), ("high", -1), ("below", 1), ("above", -1))]
+    if document["belief_game"] and not document["belief_game"].get("exact"):
+        tables.append(("belief_game.values", 1))
+    for path, sign in tables:
+        parent, key = find(document, path)
+        yield from ((f"{path}[{i}]", sign) for i in range(len(parent[key])))
+
+
+def tight(document):
+    """A certificate by bounds of the same model, all of whose bounds are attained, but for the last box."""
+    model, tie = model_of(document), document["tie"]
+    V = model.extreme_value([list(model.A)] * model.n, max)
+    Q = model.back(V)
+    steps, between = reference.bounded_rounds(model, tie, len(document["rounds"]), document["bits"])
+    keys = [(step.C, step.provoked(x)) for step, (_, x) in zip(steps, between)]
+
+    def enclose(C, A):
+        return model.extreme_value(reference.all_shown(model, C), min), model.extreme_value(A, max)
+
+    boxes = boxes_of(document)
+    for j, box in enumerate(boxes):
+        step = reference.Step(model, model.back(boxes[j - 1]["low"]), model.back(boxes[j - 1]["high"]), tie)
+        if j + 1 < len(boxes):
+            box.update(low=step.low, high=step.high)
+        box["below"], box["above"] = enclose(step.C, step.provoked(box["high"]))
+    C = reference.Step(model, Q, Q, tie).C
+    free = {"constants": reference.constants_of(model, Q)[0], "low": V, "high": V, "bits": document["bits"], "rounds": len(keys),
+            "pairs": [enclose(*key) for n, key in enumerate(keys) if key not in keys[:n]], "boxes": boxes,
+            "test": enclose(C, C)[0], "game": reference.belief_game(model, lambda M: reference.surviving(model, Q, Q, M, tie))}
+    # l_star is an increase from one state to the other
+    value, at = free["constants"]["l_star"]
+    if at and Q[at[0]][at[2]] < Q[at[1]][at[2]]:
+        free["constants"]["l_star"] = value, [at[1], at[0], at[2]]
+    return reference.examine_bounds(model, document["reading"], tie, free)[0]
+
+
+def bounds_with(model, rounds, boxes):
+    """A certificate by bounds with a limit by these boxes."""
+    document = reference.bounds_certificate(model, rounds=rounds)[0]
+    document["limit"] = {"boxes": [{name: reference.text(V) for name, V in box.items()} for box in boxes]}
+    return truth_of(document)[0]
+
+
 class AcceptsWhatIsTrue(unittest.TestCase):
     def test_reference_certificates_with_the_expected_verdicts(self):
         self.assertEqual(sorted(EXPECTED), sorted(REFERENCE))
@@ -422,6 +486,231 @@ class RefusesWhatIsFalse(unittest.TestCase):
         document = json.loads(json.dumps(REFERENCE["one_sided_paper"]))
         document["reading"] = "corrected"
         self.assertIn("$.claims[0]", check(document))
+
+
+class Rules(unittest.TestCase):
+    """Each rule of boxes, bounds, metrics and missing positions, broken alone: refused, at the place of what is false."""
+
+    TINY = Fraction(1, 10**9)
+
+    def accepted(self, document):
+        answer = check(quiet(document))
+        self.assertIsInstance(answer, list, answer)
+
+    def refused(self, name, changes, place):
+        """The certificate with these changes, {path: value or function of the old value}; it claims nothing."""
+        document = json.loads(json.dumps(quiet(REFERENCE[name] if isinstance(name, str) else name)))
+        self.accepted(document)
+        for path, change in changes.items():
+            parent, key = find(document, path)
+            parent[key] = change(parent[key]) if callable(change) else change
+        answer = check(document)
+        self.assertRegex(str(answer), r"\A" + re.escape(place), f"{name} {changes}")
+
+    def test_every_free_number_of_tight_certificates(self):
+        """All bounds are attained: an entry that is a little too large or too small is refused where it is."""
+        count = 0
+        for name in ("bounds_chain", "bounds_cycle", "bounds_islands", "bounds_hops", "bounds_random", "bounds_pit", "bounds_plane_l2"):
+            document = tight(REFERENCE[name])
+            self.accepted(document)
+            for path, sign in free_numbers(document):
+                table = re.sub(r"(\.value|\[[0-9]+\])$", "", path)
+                if table.startswith(f"limit.boxes[{len(document['limit']['boxes']) - 1}]") and table.endswith(("low", "high")):
+                    continue  # on a grid
+                self.refused(document, {path: lambda x: str(Fraction(x) + sign * self.TINY)}, f"$.{table}")
+                count += 1
+        self.assertGreater(count, 300)
+
+    def test_free_numbers_are_accepted_if_and_only_if_they_are_true(self):
+        rng, counts = random.Random(3), {False: 0, True: 0}
+        for name, original in REFERENCE.items():
+            if not name.startswith(("boxes", "bounds", "some")):
+                continue
+            document = json.loads(json.dumps(quiet(original)))
+            for path, _ in free_numbers(document):
+                parent, key = find(document, path)
+                old = parent[key]
+                parent[key] = str(Fraction(old) + rng.choice([-1, 1]) * rng.choice([Fraction(1, 2**14), Fraction(1, 3)]))
+                try:
+                    truth_of(document)
+                    true = True
+                except ValueError:
+                    true = False
+                self.assertEqual(isinstance(check(document), list), true, f"{name} {path} {parent[key]}: {check(document)}")
+                counts[true] += 1
+                parent[key] = old
+        print(counts, file=sys.stderr)
+        self.assertGreater(min(counts.values()), 200)
+
+    def test_boxes_of_one_state(self):
+        """x_n rises (or falls) to 15/2 (or -15/2), so that a box from x_1 = 5 to there is tight on all sides."""
+        for sign, inner, outer in ((1, "low", "high"), (-1, "high", "low")):
+            model = reference.Model("1/3", 2, [[sign * 5, sign * 5]], [[{0: 1}, {0: 1}]], points=[[0]], norm="linf")
+            end, box = Fraction(sign * 15, 2), {}
+            box = {inner: [Fraction(sign * 5)], outer: [end], "below": [end], "above": [end]}
+            for document in (reference.certificate(model, rounds=2, boxes=[box]), bounds_with(model, 2, [box])):
+                for name, direction, condition in ((inner, sign, 1), (outer, -sign, 2), ("below", 1, None), ("above", -1, None)):
+                    self.refused(document, {f"limit.boxes[0].{name}[0]": str(box[name][0] + direction * self.TINY)},
+                                 f"$.limit.boxes[0].{name}: [0] is too")
+                    if condition:
+                        changed = json.loads(json.dumps(quiet(document)))
+                        changed["limit"]["boxes"][0][name][0] = str(box[name][0] + direction * self.TINY)
+                        self.assertIn(f"condition {condition}", check(changed))
+
+    def test_form_of_boxes(self):
+        for name in ("boxes_cycle", "bounds_cycle"):
+            self.refused(name, {"limit.boxes": []}, "$.limit.boxes: no boxes")
+            self.refused(name, {"limit.period": 3}, "$.limit: unknown member")
+            self.refused(name, {"limit.boxes[1].radius": "1"}, "$.limit.boxes[1]: unknown member")
+            self.refused(name, {"limit.boxes[1].above": None}, "$.limit.boxes[1].above: null")
+            self.refused(name, {"limit.boxes": lambda boxes: boxes[1:] + boxes[:1]}, "$.limit.boxes[2]")
+        self.refused("bounds_cycle", {"limit": REFERENCE["cycle"]["limit"]}, "$.limit: unknown member")
+
+    def test_nothing_of_boxes_or_bounds_proves_a_violation(self):
+        document = json.loads(json.dumps(REFERENCE["boxes_paper"]))
+        model, boxes = model_of(document), boxes_of(document)
+        instances = reference.examine(model, reading="paper", rounds=len(document["rounds"]), boxes=boxes, game=game_of(document))[1]
+        at, left, right, _ = min(instances["theorem-1"], key=lambda x: x[2] - x[1])
+        self.assertGreater(left, right)
+        document["claims"] = [{"claim": "theorem-1", "verdict": "violated", "left": str(left), "right": str(right), "at": at}]
+        self.assertIn("$.claims[0].at: no instance", check(document))
+        document = json.loads(json.dumps(REFERENCE["bounds_negative"]))
+        instances = truth_of(document)[1]
+        at, left, right, _ = min(instances["lemma-1"], key=lambda x: x[2] - x[1])
+        self.assertGreater(left, right)
+        document["claims"] = [{"claim": "lemma-1", "verdict": "violated", "left": str(left), "right": str(right), "at": at}]
+        self.assertIn("$.claims[0].verdict", check(document))
+        document["claims"] = [{"claim": "lemma-3", "verdict": "undetermined"}]
+        self.assertIn("$.claims[0].claim", check(document))
+
+    def test_claims_that_need_what_is_null(self):
+        document = json.loads(json.dumps(REFERENCE["bounds_pit"]))
+        for member, names in (("limit", CLAIMS[:3] + CLAIMS[4:9]), ("belief_game", ["F"])):
+            for claim in document["claims"]:
+                answer = check({**document, member: None, "claims": [claim]})
+                self.assertEqual(isinstance(answer, str), claim["claim"] in names, answer)
+                self.assertIn("expected undetermined" if isinstance(answer, str) else "holds", str(answer))
+
+    def test_metrics(self):
+        for name in ("hops", "discrete", "bounds_hops"):
+            self.refused(name, {"model.metric": "steps"}, "$.model.metric")
+            self.refused(name, {"model.norm": "l1"}, "$.model: unknown member")
+            self.refused(name, {"model.distances": []}, "$.model: unknown member")
+            # written as a matrix they say the same
+            document = json.loads(json.dumps(REFERENCE[name]))
+            document["model"]["distances"] = reference.text(model_of(document).low)
+            del document["model"]["metric"]
+            self.assertEqual(check(document), check(REFERENCE[name]))
+        model = checker.Model(checker.Node(REFERENCE["hops"]["model"]))
+        self.assertEqual(model.d, [[0, 1, 2, None], [1, 0, 1, None], [2, 1, 0, None], [None, None, None, 0]])
+
+    def test_positions_that_are_missing(self):
+        document = REFERENCE["some_positions"]
+        listed = document["belief_game"]["positions"]
+        every = REFERENCE["chain_l1"]["belief_game"]["positions"]
+        starts = [[s, list(M)] for s, M in sorted(reference.starts(model_of(document)))]
+        self.assertTrue(len(starts) < len(listed) < len(every))
+        later = next(position for position in listed if position not in starts)
+
+        def without(position):
+            def change(game):
+                kept = [i for i, other in enumerate(game["positions"]) if other != position]
+                return dict(game, positions=[game["positions"][i] for i in kept], values=[game["values"][i] for i in kept])
+            return change
+
+        for name in ("some_positions", "bounds_chain"):
+            self.refused(name, {"belief_game": without(starts[0])}, "$.belief_game.positions: no [0, [0, 1]], expected every start")
+        self.refused("chain_l1", {"belief_game": without(later)}, "$.belief_game.positions: not all that follows")
+        self.refused("some_positions", {"belief_game.exact": True}, "$.belief_game.positions: not all that follows")
+        self.refused("bounds_chain", {"belief_game.exact": False}, "$.belief_game: unknown member")
+        # what is reached only by way of positions that are missing is not to be listed
+        model = model_of(REFERENCE["rows"])
+        for document in (REFERENCE["rows"], reference.bounds_certificate(model, rounds=1, period=0)[0]):
+            far = [0, [0]]
+            self.assertIn(far, document["belief_game"]["positions"])
+            starts = [[s, list(M)] for s, M in reference.starts(model)]
+            game = dict(document["belief_game"], positions=sorted(starts + [far]), values=["-1000"] * (len(starts) + 1))
+            if "exact" in game:
+                game["exact"] = False
+            self.refused(document, {"belief_game": game}, "$.belief_game.positions: (0, (0,)) is not reached")
+
+    def test_constants_by_bounds(self):
+        for name in ("l_r", "l_p", "k", "l_star"):
+            path = f"constants.{name}"
+            self.assertTrue(REFERENCE["bounds_islands"]["constants"][name]["at"])
+            self.refused("bounds_islands", {f"{path}.at": None}, f"$.{path}.at: null")
+            self.refused("bounds_islands", {f"{path}.value": "0"}, f"$.{path}.at: an array, expected null")
+            self.refused("bounds_islands", {f"{path}.value": "-1", f"{path}.at": None}, f"$.{path}.value: negative")
+            self.refused("bounds_islands", {f"{path}.at[1]": REFERENCE["bounds_islands"]["constants"][name]["at"][0]}, f"$.{path}.at: ")
+            self.refused("bounds_islands", {f"{path}.at[0]": 0, f"{path}.at[1]": 2}, f"$.{path}.at: expected two states at a finite")
+            self.refused("bounds_twins", {f"{path}.at": [0, 1, 0] + [0] * (name == "l_p"), f"{path}.value": "1/10"}, f"$.{path}.at: ")
+        at = REFERENCE["bounds_islands"]["constants"]["l_star"]["at"]
+        self.refused("bounds_islands", {"constants.l_star.at": [at[1], at[0], at[2]]}, "$.constants.l_star.at: the quotient is less")
+        for name in ("l_r", "l_p", "k"):  # of these the order of the states does not matter
+            document = quiet(json.loads(json.dumps(REFERENCE["bounds_islands"])))
+            at = document["constants"][name]["at"]
+            at[:2] = at[1::-1]
+            self.accepted(document)
+            document["constants"][name].update(value="0", at=None)
+            self.accepted(document)
+        for name in ("r_min", "r_max"):
+            for sign in (1, -1):
+                self.refused("bounds_islands", {f"constants.{name}": lambda x: str(Fraction(x) + sign * self.TINY)}, f"$.constants.{name}")
+
+    def test_states_at_distance_0_that_differ(self):
+        """No constant exists; by bounds the claims may be proved all the same."""
+        half = Fraction(1, 2)
+        model = reference.Model(half, 1, [[1, 0], [2, 0], [0, 3]], [[{2: 1}, {0: half, 1: half}]] * 2 + [[{0: 1}, {2: 1}]],
+                                points=[[0], [0], [1]], norm="l1")
+        document = reference.bounds_certificate(model)[0]
+        self.assertIsInstance(check(document), list, check(document))
+
+    def test_rounds_by_bounds(self):
+        name = "bounds_cycle"
+        for bits in (-1, 100001, "12", 12.0, True, None):
+            self.refused(name, {"bits": bits}, "$.bits")
+        self.refused(name, {"rounds": []}, "$.rounds: no rounds")
+        self.refused(name, {"rounds[0]": 1}, "$.rounds: [0] is 1, expected pairs in the order")
+        self.refused(name, {"rounds[3]": lambda i: 1 - i}, "$.rounds: [3] is pair")
+        self.refused(name, {"pairs": lambda pairs: pairs + pairs[:1], "rounds": lambda rounds: rounds[:-1] + [2]}, "$.pairs: a pair occurs twice")
+        self.refused(name, {"pairs": lambda pairs: pairs + [dict(pairs[0], choices=[[1], [1]])]}, "$.pairs: pair 2 is of no round")
+        self.refused("bounds_random", {"rounds": [0]}, "$.pairs: pair 1 is of no round")
+        for member in ("choices", "provoked"):
+            for change in ([], [0], [1], [0, 1], [1, 0], [0, 0, 1]):
+                if change != REFERENCE["bounds_negative"]["pairs"][1][member][2]:
+                    self.refused("bounds_negative", {f"pairs[1].{member}[2]": change}, f"$.rounds: [1] is pair 1, whose {member} of state 2")
+            self.refused("bounds_negative", {f"pairs[1].{member}[2]": [2]}, f"$.pairs[1].{member}[2][0]")
+            self.refused("bounds_negative", {f"pairs[1].{member}": lambda x: x[:-1]}, f"$.pairs[1].{member}")
+
+    def test_candidates(self):
+        """Against the definition, with intervals of few values, so that ends often meet."""
+        rng = random.Random(5)
+        for _ in range(3000):
+            count = rng.randrange(1, 5)
+            lo = [[rng.randrange(4) for _ in range(count)] for _ in range(2)]
+            hi = [[x + rng.choice([0, 0, 1, 2]) for x in row] for row in lo]
+            tie = rng.choice(["lowest", "highest"])
+            model = checker.Model.__new__(checker.Model)
+            model.m = count
+            tiny = type("Tiny", (), {"A": range(count)})
+            self.assertEqual(model.candidates(checker.Table(lo, 1), checker.Table(hi, 1), (0, 1), tie),
+                             reference.surviving(tiny, lo, hi, (0, 1), tie))
+
+    def test_random_models(self):
+        """Both producers of one model, in all options; what they claim is accepted with the same verdicts."""
+        for seed in range(24):
+            rng = random.Random(seed)
+            model = reference.random_model(100 + seed, rng.randrange(2, 5), rng.randrange(1, 4), Fraction(rng.randrange(4), 5), rng.randrange(3))
+            kind = rng.choice(["hops", "discrete", "points"])
+            if kind != "points":
+                model = reference.Model(model.g, model.eps, model.R, model.P, metric=kind)
+            options = {"reading": rng.choice(["paper", "corrected"]), "tie": rng.choice(["lowest", "highest"]),
+                       "rounds": rng.randrange(1, 7), "period": rng.randrange(1, 4), "bits": rng.randrange(8),
+                       "listed": lambda position: sum(position[1]) % 3 > 0}
+            for document in (reference.certificate(model, **options), reference.bounds_certificate(model, **options)[0]):
+                rows = check(document)
+                self.assertIsInstance(rows, list, f"{seed} {document['format']}: {rows}")
+                self.assertEqual([row[1] for row in rows], [claim["verdict"] for claim in document["claims"]])
 
 
 class Program(unittest.TestCase):
