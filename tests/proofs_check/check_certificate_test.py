@@ -557,6 +557,21 @@ class Rules(unittest.TestCase):
                         changed["limit"]["boxes"][0][name][0] = str(box[name][0] + direction * self.TINY)
                         self.assertIn(f"condition {condition}", check(changed))
 
+    def test_the_last_box_is_around_the_last_round(self):
+        apart = 0
+        for name, original in REFERENCE.items():
+            if not name.startswith("bounds") or not original["limit"]:
+                continue
+            x = reference.bounded_rounds(model_of(original), original["tie"], len(original["rounds"]), original["bits"])[1][-1]
+            apart += x[0] != x[1]
+            last = f"limit.boxes[{len(original['limit']['boxes']) - 1}]"
+            for s in range(original["model"]["states"]):
+                for end, values, sign in (("low", x[0], 1), ("high", x[1], -1)):
+                    self.refused(name, {f"{last}.{end}[{s}]": str(values[s] + sign * self.TINY)},
+                                 f"$.{last}.{end}: [{s}] is too {'large' if sign > 0 else 'small'}, expected at {'most' if sign > 0 else 'least'} "
+                                 "x_{N-1} (condition 1)")
+        self.assertGreater(apart, 4)
+
     def test_form_of_boxes(self):
         for name in ("boxes_cycle", "bounds_cycle"):
             self.refused(name, {"limit.boxes": []}, "$.limit.boxes: no boxes")
