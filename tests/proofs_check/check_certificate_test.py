@@ -29,7 +29,8 @@ import reference_certificates as reference  # noqa: E402
 # The verdicts in the order of the table: lemma-1, lemma-1-iterates, lemma-2, lemma-3 (not by bounds), theorem-1, A, B, C, D, E, F.
 EXPECTED = {
     "one_sided_corrected": "hhhhhhhhhhh", "one_sided_paper": "vhvhvhhhhhh", "cycle": "hhhhhhhhhhh", "cycle_ties": "hhhhhhhhhhh",
-    "cycle_ties_highest": "hhhhhhhhhhh", "cycle_ties_apart": "uhhhhhhhhhh", "chain_l1": "hhhhhhhhhhh", "plane_l2": "hhhhhhhhhhh", "islands": "hhhhhhhhhhh",
+    "cycle_ties_highest": "hhhhhhhhhhh", "cycle_ties_apart": "uhhhhhhhhhh", "chain_l1": "hhhhhhhhhhh", "plane_l2": "hhhhhhhhhhh",
+    "islands": "hhhhhhhhhhh",
     "eps_zero": "hhhhhhhhhhh", "one_state": "hhhhhhhhhhh", "tied_lowest": "hhhhhhhhhhh", "tied_highest": "hhhhhhhhhhh",
     "negative": "hhhhhhhhhhh", "negative_paper": "vhhhhhhhhhh", "mirror": "hhhhhhhhhhh", "twins": "hhhhhhhhhhh",
     "twins_tie": "hhhhhhhhhhh", "discount_zero": "hhhhhhhhhhh", "pit": "hhhhhhhhhhh", "pit_highest": "hhhhhhhhhhh",
@@ -113,7 +114,8 @@ def truth_of(document):
         free = {"constants": {name: (Fraction(entry["value"]), entry["at"]) for name, entry in document["constants"].items()
                               if isinstance(entry, dict)},
                 "low": numbers(document["optimal"]["low"]), "high": numbers(document["optimal"]["high"]), "bits": document["bits"],
-                "rounds": len(document["rounds"]), "pairs": [(numbers(pair["below"]), numbers(pair["above"])) for pair in document["pairs"]],
+                "rounds": len(document["rounds"]),
+                "pairs": [(numbers(pair["below"]), numbers(pair["above"])) for pair in document["pairs"]],
                 "boxes": boxes_of(document), "test": numbers(document["test_time"]["below"]), "game": game_of(document)}
         return reference.examine_bounds(model, document["reading"], document["tie"], free)
     options = {"reading": document["reading"], "tie": document["tie"], "rounds": len(document["rounds"]), "with_beliefs": bool(game),
@@ -530,14 +532,16 @@ class Rules(unittest.TestCase):
             for path, _ in free_numbers(document):
                 parent, key = find(document, path)
                 old = parent[key]
-                parent[key] = str(Fraction(old) + rng.choice([-1, 1]) * rng.choice([Fraction(1, 2**14), Fraction(1, 3)]))
-                try:
-                    truth_of(document)
-                    true = True
-                except ValueError:
-                    true = False
-                self.assertEqual(isinstance(check(document), list), true, f"{name} {path} {parent[key]}: {check(document)}")
-                counts[true] += 1
+                changes = [rng.choice([-1, 1]) * rng.choice([Fraction(1, 2**14), Fraction(1, 3)])]
+                for change in changes + [5] * (".high" in path):  # a box that is so much higher may provoke more
+                    parent[key] = str(Fraction(old) + change)
+                    try:
+                        truth_of(document)
+                        true = True
+                    except ValueError:
+                        true = False
+                    self.assertEqual(isinstance(check(document), list), true, f"{name} {path} {parent[key]}: {check(document)}")
+                    counts[true] += 1
                 parent[key] = old
         print(counts, file=sys.stderr)
         self.assertGreater(min(counts.values()), 200)
@@ -582,13 +586,15 @@ class Rules(unittest.TestCase):
         self.refused("bounds_cycle", {"limit": REFERENCE["cycle"]["limit"]}, "$.limit: unknown member")
 
     def test_nothing_of_boxes_or_bounds_proves_a_violation(self):
-        document = json.loads(json.dumps(REFERENCE["boxes_paper"]))
-        model, boxes = model_of(document), boxes_of(document)
-        instances = reference.examine(model, reading="paper", rounds=len(document["rounds"]), boxes=boxes, game=game_of(document))[1]
-        at, left, right, _ = min(instances["theorem-1"], key=lambda x: x[2] - x[1])
-        self.assertGreater(left, right)
-        document["claims"] = [{"claim": "theorem-1", "verdict": "violated", "left": str(left), "right": str(right), "at": at}]
-        self.assertIn("$.claims[0].at: no instance", check(document))
+        model = model_of(REFERENCE["chain_l1"])
+        ends = [[Fraction(sign * 1000)] * model.n for sign in (-1, 1)]
+        wide = dict(zip(("low", "high", "below", "above"), ends * 2))  # so wide that the phase has the least right - left
+        document, instances = reference.examine(model, rounds=2, boxes=[wide])
+        for name in CLAIMS[:3] + CLAIMS[4:9]:
+            at, left, right, _ = min(instances[name], key=lambda x: x[2] - x[1])
+            self.assertTrue(left > right and at["n"] == 2)
+            document["claims"] = [{"claim": name, "verdict": "violated", "left": str(left), "right": str(right), "at": at}]
+            self.assertIn("$.claims[0].at: no instance", check(document))
         document = json.loads(json.dumps(REFERENCE["bounds_negative"]))
         instances = truth_of(document)[1]
         at, left, right, _ = min(instances["lemma-1"], key=lambda x: x[2] - x[1])
@@ -687,13 +693,15 @@ class Rules(unittest.TestCase):
         self.refused(name, {"rounds": []}, "$.rounds: no rounds")
         self.refused(name, {"rounds[0]": 1}, "$.rounds: [0] is 1, expected pairs in the order")
         self.refused(name, {"rounds[3]": lambda i: 1 - i}, "$.rounds: [3] is pair")
-        self.refused(name, {"pairs": lambda pairs: pairs + pairs[:1], "rounds": lambda rounds: rounds[:-1] + [2]}, "$.pairs: a pair occurs twice")
+        self.refused(name, {"pairs": lambda pairs: pairs + pairs[:1], "rounds": lambda rounds: rounds[:-1] + [2]},
+                     "$.pairs: a pair occurs twice")
         self.refused(name, {"pairs": lambda pairs: pairs + [dict(pairs[0], choices=[[1], [1]])]}, "$.pairs: pair 2 is of no round")
         self.refused("bounds_random", {"rounds": [0]}, "$.pairs: pair 1 is of no round")
         for member in ("choices", "provoked"):
             for change in ([], [0], [1], [0, 1], [1, 0], [0, 0, 1]):
                 if change != REFERENCE["bounds_negative"]["pairs"][1][member][2]:
-                    self.refused("bounds_negative", {f"pairs[1].{member}[2]": change}, f"$.rounds: [1] is pair 1, whose {member} of state 2")
+                    self.refused("bounds_negative", {f"pairs[1].{member}[2]": change},
+                                 f"$.rounds: [1] is pair 1, whose {member} of state 2")
             self.refused("bounds_negative", {f"pairs[1].{member}[2]": [2]}, f"$.pairs[1].{member}[2][0]")
             self.refused("bounds_negative", {f"pairs[1].{member}": lambda x: x[:-1]}, f"$.pairs[1].{member}")
 
@@ -715,7 +723,8 @@ class Rules(unittest.TestCase):
         """Both producers of one model, in all options; what they claim is accepted with the same verdicts."""
         for seed in range(24):
             rng = random.Random(seed)
-            model = reference.random_model(100 + seed, rng.randrange(2, 5), rng.randrange(1, 4), Fraction(rng.randrange(4), 5), rng.randrange(3))
+            size = rng.randrange(2, 5), rng.randrange(1, 4)
+            model = reference.random_model(100 + seed, *size, Fraction(rng.randrange(4), 5), rng.randrange(3))
             kind = rng.choice(["hops", "discrete", "points"])
             if kind != "points":
                 model = reference.Model(model.g, model.eps, model.R, model.P, metric=kind)

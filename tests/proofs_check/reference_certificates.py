@@ -254,6 +254,28 @@ class Limit:
         return {"period": self.k, "radius": text(self.radius), "classes": self.classes, "orbit": text(self.orbit), "low": text(self.low),
                 "fixed": text(self.fixed)}
 
+    def instances(self, sides, N):
+        """Of phases; those of lemma-1 are None where they do not decide it."""
+        model, k, found = self.model, self.k, {name: [] for name in CLAIMS}
+        low, ours = [model.back(V) for V in self.low], [V and model.back(V) for V in self.fixed]
+        real = [k == 1 or self.single[j] for j in range(k)]  # low_j is the value of a pair
+        several = [[sum(p for t, p in row.items() if len(model.ball[t]) > 1) for row in state] for state in model.P]
+        slack = 2 * model.g * self.delta
+        found["lemma-1-iterates"] += sides.lipschitz("lemma-1-iterates", self.table, N)
+        for j in range(k):
+            found["lemma-1-iterates"] += sides.lipschitz("lemma-1-iterates", self.Q[j], N + j, slack)
+            lefts = [[abs(x - y) + slack * m for x, y, m in zip(*rows)]
+                     for rows in zip(tstar(model, self.Q[j]), self.Q[(j + 1) % k], several)]
+            found["lemma-2"] += sides.each(lefts, N + j, sides.D_print, [[slack * m == 0 for m in row] for row in several])
+            found["theorem-1"] += sides.gap(ours[j] or low[j], N + j, sides.bound("theorem-1", N + j, True), bool(ours[j]))
+            for name in ("A", "B", "C", "D"):
+                found[name] += sides.gap(low[j], N + j, sides.bound(name, N + j, True), real[j])
+            for X in (low[j], ours[j] or low[j]):
+                found["lemma-1"] += sides.lipschitz("lemma-1", X, N + j)
+        if not all(ours) or not all(real):
+            found["lemma-1"] = None
+        return found
+
 
 FOUND = {}  # what find_limit found, by model and tie: the test asks for the same models again
 
@@ -595,29 +617,6 @@ def round_instances(sides, tables, all_pairs, pairs, fixed, robust):
     return found
 
 
-def orbit_instances(sides, limit, N):
-    """Of phases; those of lemma-1 are None where they do not decide it."""
-    model, k, found = sides.model, limit.k, {name: [] for name in CLAIMS}
-    low, ours = [model.back(V) for V in limit.low], [V and model.back(V) for V in limit.fixed]
-    real = [k == 1 or limit.single[j] for j in range(k)]  # low_j is the value of a pair
-    several = [[sum(p for t, p in row.items() if len(model.ball[t]) > 1) for row in state] for state in model.P]
-    slack = 2 * model.g * limit.delta
-    found["lemma-1-iterates"] += sides.lipschitz("lemma-1-iterates", limit.table, N)
-    for j in range(k):
-        found["lemma-1-iterates"] += sides.lipschitz("lemma-1-iterates", limit.Q[j], N + j, slack)
-        lefts = [[abs(x - y) + slack * m for x, y, m in zip(*rows)]
-                 for rows in zip(tstar(model, limit.Q[j]), limit.Q[(j + 1) % k], several)]
-        found["lemma-2"] += sides.each(lefts, N + j, sides.D_print, [[slack * m == 0 for m in row] for row in several])
-        found["theorem-1"] += sides.gap(ours[j] or low[j], N + j, sides.bound("theorem-1", N + j, True), bool(ours[j]))
-        for name in ("A", "B", "C", "D"):
-            found[name] += sides.gap(low[j], N + j, sides.bound(name, N + j, True), real[j])
-        for X in (low[j], ours[j] or low[j]):
-            found["lemma-1"] += sides.lipschitz("lemma-1", X, N + j)
-    if not all(ours) or not all(real):
-        found["lemma-1"] = None
-    return found
-
-
 def collect(model, early, late, others):
     """{claim: instances}, without those that can only be undetermined. `late`: of phases, or None."""
     found = dict(others)
@@ -666,21 +665,17 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
     Qstar = model.back(Vstar)
     constants, r_min, r_max = constants_of(model, Qstar)
     sides = Sides(model, reading, {name: value for name, (value, _) in constants.items()}, Qstar, Qstar, Vstar)
-    orbit, limit = None, None
-    if not (period or boxes):
-        N, orbit = find_limit(model, tie)
-        rounds = rounds or N
+    rounds = rounds or find_limit(model, tie)[0]
     tables, all_pairs = run(model, tie, rounds)
+    limit = None
     if period or boxes:
         policy, attack = all_pairs[-1]
         x = [tables[-2][s][policy[attack[s]]] for s in model.S]
         limit = Boxes(model, boxes or make_boxes(model, tie, period, x, x, bits), x, x, tie)
-        late = limit.instances(sides, rounds)
-    elif orbit and with_limit:
-        limit = Limit(model, orbit * repeat, tables[rounds], tie, radius, classes)
+    elif with_limit and find_limit(model, tie)[1]:
+        limit = Limit(model, find_limit(model, tie)[1] * repeat, tables[rounds], tie, radius, classes)
         if not limit.valid():
             raise ValueError("not a limit after so many rounds, or with this radius")
-        late = orbit_instances(sides, limit, rounds)
     pairs = sorted(set(all_pairs), key=all_pairs.index)
     fixed = [model.value([policy[t] for t in attack]) for policy, attack in pairs]
     robust = [robust_value(model, policy) for policy, _ in pairs]
@@ -700,7 +695,7 @@ def examine(model, reading="corrected", tie="lowest", rounds=None, radius=None, 
         the_game = {**game_json(model, positions, W), "exact": exact}
         others["F"] = belief_instances(sides, positions, W, exact)
     early = round_instances(sides, tables, all_pairs, pairs, fixed, robust)
-    instances = collect(model, early, late if limit else None, others)
+    instances = collect(model, early, limit and limit.instances(sides, rounds), others)
     result = {"format": "maximin-certificate", "version": 1, "model": model_json(model), "reading": reading, "tie": tie,
               "constants": constants_json(constants, r_min, r_max), "optimal": text(Vstar),
               "pairs": [{"policy": list(policy), "attack": list(attack), "fixed": text(f), "robust": text(w)}
@@ -751,7 +746,8 @@ def lower_constants(model, low, high, bits):
     return best
 
 
-def bounds_certificate(model, reading="corrected", tie="lowest", rounds=8, bits=12, period=1, with_beliefs=True, listed=lambda position: True):
+def bounds_certificate(model, reading="corrected", tie="lowest", rounds=8, bits=12, period=1, with_beliefs=True,
+                       listed=lambda position: True):
     """A certificate by bounds, and its instances; all tables on a grid of 2^-bits. `period` 0: no limit."""
     Vstar = model.extreme_value([list(model.A)] * model.n, max)
     V, W = less(model, Vstar, bits), more(model, Vstar, bits)
@@ -896,8 +892,8 @@ def reference():
     # Hops are of both directions, and do not lead everywhere; in the ball of 1 are 0 and 2, which it cannot reach and can.
     hops = Model("3/4", 1, [[1, 0], ["1/2", 2], [0, "-1/3"], [3, 1]],
                  [[{1: 1}, {0: half, 1: half}], [{2: "1/3", 1: "2/3"}, {1: 1}], [{2: 1}, {2: 1}], [{3: 1}, {3: 1}]], metric="hops")
-    discrete = Model("2/3", 1, [[1, 0], [0, 2], ["-1/2", "1/3"]], [[{0: half, 1: half}, {2: 1}], [{1: 1}, {0: "1/4", 2: "3/4"}], [{2: 1}, {0: 1}]],
-                     metric="discrete")
+    discrete = Model("2/3", 1, [[1, 0], [0, 2], ["-1/2", "1/3"]],
+                     [[{0: half, 1: half}, {2: 1}], [{1: 1}, {0: "1/4", 2: "3/4"}], [{2: 1}, {0: 1}]], metric="discrete")
     random_six = random_model(1, 6, 2, Fraction(1, 2), 1)
     greedy = Model(0, 1, [[1, 2], [2, 0]], sure([0, 1], [1, 0]), points=[[0], [1]], norm="l1")
     return {
