@@ -331,6 +331,20 @@ def bounds_with(model, rounds, boxes):
     return truth_of(document)[0]
 
 
+def all_instances(name, families):
+    """(at, left, right, proves) of the checker's families."""
+    for n, proves, over, right_over, rows in families:
+        for states, lefts, right in rows:
+            for a, left in enumerate(lefts):
+                at = {} if n is None else {"n": n}
+                if states:
+                    at["states"] = list(states)
+                    if name != "F":
+                        at["action"] = a
+                if left is not None:
+                    yield at, Fraction(left, over), Fraction(right, right_over), proves
+
+
 class AcceptsWhatIsTrue(unittest.TestCase):
     def test_reference_certificates_with_the_expected_verdicts(self):
         self.assertEqual(sorted(EXPECTED), sorted(REFERENCE))
@@ -340,6 +354,21 @@ class AcceptsWhatIsTrue(unittest.TestCase):
             names = [name for name in CLAIMS if name != "lemma-3" or document["format"] == "maximin-certificate"]
             self.assertEqual([row[0] for row in rows], names)
             self.assertEqual("".join(row[1][0] for row in rows), EXPECTED[name], name)
+
+    def test_all_instances(self):
+        """Of every claim exactly those of the reference, not only the one that is stated."""
+        for name, document in REFERENCE.items():
+            by_bounds = document["format"] == "maximin-bounds"
+            found, _ = (checker.check_bounds if by_bounds else checker.check_exact)(checker.Node(document))
+            expected = truth_of(document)[1]
+            for claim in document["claims"]:
+                families = found.of(claim["claim"])
+                self.assertEqual(families is None, claim["claim"] not in expected, (name, claim))
+                if families is None:
+                    continue
+                seen = {(json.dumps(at), left, right) for at, left, right, proves in all_instances(claim["claim"], families)
+                        if proves or claim["verdict"] != "violated"}
+                self.assertEqual(seen, {(json.dumps(x[0]), *x[1:3]) for x in expected[claim["claim"]]}, (name, claim))
 
     def test_printed_bound_of_the_one_sided_model_is_violated(self):
         theorem = check(REFERENCE["one_sided_paper"])[4]
@@ -519,7 +548,7 @@ class Rules(unittest.TestCase):
                 table = re.sub(r"(\.value|\[[0-9]+\])$", "", path)
                 if table.startswith(f"limit.boxes[{len(document['limit']['boxes']) - 1}]") and table.endswith(("low", "high")):
                     continue  # on a grid
-                self.refused(document, {path: lambda x: str(Fraction(x) + sign * self.TINY)}, f"$.{table}")
+                self.refused(document, {path: lambda x, sign=sign: str(Fraction(x) + sign * self.TINY)}, f"$.{table}")
                 count += 1
         self.assertGreater(count, 300)
 
@@ -560,6 +589,17 @@ class Rules(unittest.TestCase):
                         changed = json.loads(json.dumps(quiet(document)))
                         changed["limit"]["boxes"][0][name][0] = str(box[name][0] + direction * self.TINY)
                         self.assertIn(f"condition {condition}", check(changed))
+
+    def test_what_is_provoked_depends_on_the_box(self):
+        """In state 0 the attacker provokes action 0 for 0; but in a box up to 10 action 1 as well, which is worth 20."""
+        model = reference.Model("1/2", 1, [[0, 10], [1, -1], [-9, 3]], reference.sure(*[[s, s] for s in range(3)]),
+                                points=[[0], [1], [2]], norm="l1")
+        box = dict(zip(("low", "high", "below", "above"), map(numbers, ([0, -2, 3], [9, -1, 6], [0, -2, 6], [0, -2, 6]))))
+        for document in (reference.certificate(model, rounds=2, boxes=[box]), bounds_with(model, 2, [box])):
+            self.refused(document, {"limit.boxes[0].high[0]": "10"}, "$.limit.boxes[0].above: [0] is too small")
+            document["limit"]["boxes"][0]["high"][0], document["limit"]["boxes"][0]["above"][0] = "10", "20"
+            self.accepted(document)
+            self.refused(document, {"limit.boxes[0].above[0]": str(20 - self.TINY)}, "$.limit.boxes[0].above: [0] is too small")
 
     def test_the_last_box_is_around_the_last_round(self):
         apart = 0
@@ -674,9 +714,11 @@ class Rules(unittest.TestCase):
             self.accepted(document)
             document["constants"][name].update(value="0", at=None)
             self.accepted(document)
+        at = REFERENCE["islands"]["constants"]["l_r"]["at"]  # in an exact certificate it does
+        self.refused("islands", {"constants.l_r.at": [at[1], at[0], at[2]]}, "$.constants.l_r.at: expected two states")
         for name in ("r_min", "r_max"):
             for sign in (1, -1):
-                self.refused("bounds_islands", {f"constants.{name}": lambda x: str(Fraction(x) + sign * self.TINY)}, f"$.constants.{name}")
+                self.refused("bounds_islands", {f"constants.{name}": lambda x, sign=sign: str(Fraction(x) + sign * self.TINY)}, f"$.constants.{name}")
 
     def test_states_at_distance_0_that_differ(self):
         """No constant exists; by bounds the claims may be proved all the same."""
