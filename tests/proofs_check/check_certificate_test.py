@@ -36,7 +36,8 @@ EXPECTED = {
     "twins_tie": "hhhhhhhhhhh", "discount_zero": "hhhhhhhhhhh", "pit": "hhhhhhhhhhh", "pit_highest": "hhhhhhhhhhh",
     "rows": "hhhhhhhhhhh", "rows_highest": "hhhhhhhhhhh", "detour": "hhhhhhhhhhh", "late": "hhhhhhhhhhh", "undecided": "uuuhuuuuuhu",
     "lower_bound": "hhhhhhhhhhh", "random_six": "hhhhhhhhhhh", "hops": "hhhhhhhhhhh", "discrete": "hhhhhhhhhhh",
-    "some_positions": "hhhhhhhhhhh", "boxes_cycle": "hhhhhhhhhhh", "boxes_cycle_one": "hhhhhhhhhhh", "boxes_paper": "vhvhuhhhhhh",
+    "some_positions": "hhhhhhhhhhh", "some_starts": "hhhhhhhhhhh", "boxes_cycle": "hhhhhhhhhhh", "boxes_cycle_one": "hhhhhhhhhhh",
+    "boxes_paper": "vhvhuhhhhhh",
     "boxes_plane_l2": "hhhhhhhhhhh", "boxes_single": "hhhhuuuuuhh", "boxes_random": "hhhhhhhhhhh", "boxes_wide": "hhhhhhhhhhh",
     "bounds_chain": "hhhhhhhhhh", "bounds_cycle": "hhhhhhhhhh", "bounds_cycle_paper": "hhhhhhhhhh", "bounds_plane_l2": "hhhhhhhhhh",
     "bounds_twins": "hhhhhhhhhh", "bounds_islands": "hhhhhhhhhu", "bounds_blind": "hhhuuuuuuu", "bounds_single": "hhhuuuuuuu",
@@ -44,7 +45,8 @@ EXPECTED = {
     "bounds_pit": "hhhhhhhhhh"}
 
 CLAIMS = ["lemma-1", "lemma-1-iterates", "lemma-2", "lemma-3", "theorem-1", "A", "B", "C", "D", "E", "F"]
-WORDS = ["l1", "l2", "linf", "hops", "discrete", "maximin-bounds", "corrected", "paper", "lowest", "highest", "holds", "violated", "undetermined", "lemma-1", "A", "F"]
+WORDS = ["l1", "l2", "linf", "hops", "discrete", "maximin-bounds", "corrected", "paper", "lowest", "highest", "holds", "violated",
+         "undetermined", "lemma-1", "A", "F"]
 
 # Why an accepted mutant may be true.
 ALLOWED = {
@@ -541,13 +543,15 @@ class Rules(unittest.TestCase):
     def test_every_free_number_of_tight_certificates(self):
         """All bounds are attained: an entry that is a little too large or too small is refused where it is."""
         count = 0
-        for name in ("bounds_chain", "bounds_cycle", "bounds_islands", "bounds_hops", "bounds_random", "bounds_pit", "bounds_plane_l2"):
-            document = tight(REFERENCE[name])
+        for name in ("bounds_chain", "bounds_cycle", "bounds_islands", "bounds_hops", "bounds_random", "bounds_pit", "bounds_plane_l2",
+                     "some_positions", "some_starts"):
+            document = tight(REFERENCE[name]) if name.startswith("bounds") else REFERENCE[name]  # whose game is tight
             self.accepted(document)
+            on_a_grid = f"limit.boxes[{len(document['limit'].get('boxes', [])) - 1}]"
             for path, sign in free_numbers(document):
                 table = re.sub(r"(\.value|\[[0-9]+\])$", "", path)
-                if table.startswith(f"limit.boxes[{len(document['limit']['boxes']) - 1}]") and table.endswith(("low", "high")):
-                    continue  # on a grid
+                if table.startswith(on_a_grid) and table.endswith(("low", "high")):
+                    continue
                 self.refused(document, {path: lambda x, sign=sign: str(Fraction(x) + sign * self.TINY)}, f"$.{table}")
                 count += 1
         self.assertGreater(count, 300)
@@ -610,10 +614,9 @@ class Rules(unittest.TestCase):
             apart += x[0] != x[1]
             last = f"limit.boxes[{len(original['limit']['boxes']) - 1}]"
             for s in range(original["model"]["states"]):
-                for end, values, sign in (("low", x[0], 1), ("high", x[1], -1)):
-                    self.refused(name, {f"{last}.{end}[{s}]": str(values[s] + sign * self.TINY)},
-                                 f"$.{last}.{end}: [{s}] is too {'large' if sign > 0 else 'small'}, expected at {'most' if sign > 0 else 'least'} "
-                                 "x_{N-1} (condition 1)")
+                for end, value, says in (("low", x[0][s] + self.TINY, "is too large, expected at most"),
+                                         ("high", x[1][s] - self.TINY, "is too small, expected at least")):
+                    self.refused(name, {f"{last}.{end}[{s}]": str(value)}, f"$.{last}.{end}: [{s}] {says} x_{{N-1}} (condition 1)")
         self.assertGreater(apart, 4)
 
     def test_form_of_boxes(self):
@@ -684,6 +687,9 @@ class Rules(unittest.TestCase):
         self.refused("chain_l1", {"belief_game": without(later)}, "$.belief_game.positions: not all that follows")
         self.refused("some_positions", {"belief_game.exact": True}, "$.belief_game.positions: not all that follows")
         self.refused("bounds_chain", {"belief_game.exact": False}, "$.belief_game: unknown member")
+        self.refused("chain_l1", {"belief_game.values": lambda W: [str(Fraction(x) - 1) for x in W]}, "$.belief_game.values")
+        for name in ("chain_l1", "some_positions", "bounds_chain"):
+            self.refused(name, {"belief_game.reach": "3"}, "$.belief_game.reach")
         # what is reached only by way of positions that are missing is not to be listed
         model = model_of(REFERENCE["rows"])
         for document in (REFERENCE["rows"], reference.bounds_certificate(model, rounds=1, period=0)[0]):
@@ -718,7 +724,8 @@ class Rules(unittest.TestCase):
         self.refused("islands", {"constants.l_r.at": [at[1], at[0], at[2]]}, "$.constants.l_r.at: expected two states")
         for name in ("r_min", "r_max"):
             for sign in (1, -1):
-                self.refused("bounds_islands", {f"constants.{name}": lambda x, sign=sign: str(Fraction(x) + sign * self.TINY)}, f"$.constants.{name}")
+                self.refused("bounds_islands", {f"constants.{name}": lambda x, sign=sign: str(Fraction(x) + sign * self.TINY)},
+                             f"$.constants.{name}")
 
     def test_states_at_distance_0_that_differ(self):
         """No constant exists; by bounds the claims may be proved all the same."""
@@ -727,6 +734,14 @@ class Rules(unittest.TestCase):
                                 points=[[0], [0], [1]], norm="l1")
         document = reference.bounds_certificate(model)[0]
         self.assertIsInstance(check(document), list, check(document))
+
+    def test_each_format_has_its_own_members(self):
+        self.refused("bounds_chain", {"format": "maximin-certificate"}, "$: unknown member")
+        self.refused("chain_l1", {"format": "maximin-bounds"}, "$: no member")
+        for member in ("bits", "optimal"):
+            document = json.loads(json.dumps(REFERENCE["bounds_chain"]))
+            del document[member]
+            self.assertIn(f"$: no member {member}", check(document))
 
     def test_rounds_by_bounds(self):
         name = "bounds_cycle"
@@ -807,7 +822,7 @@ class Program(unittest.TestCase):
             self.assertIn(word, err.getvalue())
 
     def test_exit_codes(self):
-        holds, violated, undetermined = (REFERENCE[name] for name in ("chain_l1", "one_sided_paper", "eps_zero"))
+        holds, violated, undetermined = (REFERENCE[name] for name in ("chain_l1", "one_sided_paper", "undecided"))
         for contents, code in (([holds], 0), ([violated], 1), ([undetermined], 3), ([b"{}"], 2), ([holds, undetermined], 3),
                                ([undetermined, violated, holds], 1), ([violated, b"[", undetermined], 2)):
             self.assertEqual(self.run_on(*contents)[0], code)

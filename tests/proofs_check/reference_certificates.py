@@ -928,6 +928,7 @@ def reference():
         "hops": certificate(hops),
         "discrete": certificate(discrete),
         "some_positions": certificate(chain, listed=lambda position: sum(position[1]) % 2 == 0),
+        "some_starts": certificate(random_six, listed=lambda position: False),
         "boxes_cycle": certificate(cycle, rounds=31, period=3),
         "boxes_cycle_one": certificate(cycle, rounds=20, period=1, tie="highest"),
         "boxes_paper": certificate(one_sided, reading="paper", rounds=6, period=1, belief_slack=Fraction(1, 8)),
