@@ -1145,6 +1145,9 @@ def report(file):
     verdicts = {row[1] for row in rows[1:]}
     code = 1 if "violated" in verdicts else 3 if "undetermined" in verdicts else 0
     lines = ["  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
+    left_out = [name for name in CLAIMS if name not in {row[0] for row in rows}]
+    if left_out:
+        lines.append("  not in this certificate: " + ", ".join(left_out))
     try:
         print(f"{shown}: {({0: 'HOLDS', 1: 'VIOLATED', 3: 'UNDETERMINED'})[code]}", *lines, sep="\n", flush=True)
     except BrokenPipeError:  # nobody reads on: the exit code still counts

@@ -828,6 +828,12 @@ class Program(unittest.TestCase):
             self.assertEqual(self.run_on(*contents)[0], code)
         self.assertEqual(self.run_on()[0], 2)
 
+    def test_claims_without_an_entry_are_named(self):
+        certificate = dict(REFERENCE["chain_l1"])
+        certificate["claims"] = certificate["claims"][:-2]
+        self.assertIn("not in this certificate: E, F", self.run_on(certificate)[1])
+        self.assertNotIn("not in this certificate", self.run_on(REFERENCE["chain_l1"])[1])
+
     def test_white_space_is_allowed_around_a_certificate(self):
         text = json.dumps(REFERENCE["chain_l1"]).encode()
         self.assertEqual(self.run_on(b" \t\r\n" + text + b" \t\r\n")[0], 0)
