@@ -31,14 +31,14 @@ struct Move {
   int dx, dy;  // in lattice steps of 0.5
 };
 
-constexpr std::array<Move, 8> moves{{{"up", 0, 1},
-                                     {"up-right", 1, 1},
-                                     {"right", 1, 0},
-                                     {"down-right", 1, -1},
-                                     {"down", 0, -1},
-                                     {"down-left", -1, -1},
-                                     {"left", -1, 0},
-                                     {"up-left", -1, 1}}};
+constexpr std::array<Move, 8> king_moves{{{"up", 0, 1},
+                                          {"up-right", 1, 1},
+                                          {"right", 1, 0},
+                                          {"down-right", 1, -1},
+                                          {"down", 0, -1},
+                                          {"down-left", -1, -1},
+                                          {"left", -1, 0},
+                                          {"up-left", -1, 1}}};
 
 constexpr int points_per_axis = 20;
 
@@ -71,12 +71,13 @@ FiniteMdp<double> mdp_on(const std::vector<LatticePoint>& points, const Gridworl
   const auto slot = [](int i, int j) { return static_cast<std::size_t>(j * points_per_axis + i); };
   for (std::size_t s = 0; s < points.size(); ++s) state_at[slot(points[s].i, points[s].j)] = static_cast<State>(s);
 
-  FiniteMdpBuilder<double> builder(static_cast<State>(points.size()), static_cast<Action>(moves.size()), o.discount);
+  FiniteMdpBuilder<double> builder(static_cast<State>(points.size()), static_cast<Action>(king_moves.size()),
+                                   o.discount);
   for (std::size_t from = 0; from < points.size(); ++from) {
     const auto s = static_cast<State>(from);
-    for (std::size_t m = 0; m < moves.size(); ++m) {
+    for (std::size_t m = 0; m < king_moves.size(); ++m) {
       const auto a = static_cast<Action>(m);
-      const int i = points[from].i + moves[m].dx, j = points[from].j + moves[m].dy;
+      const int i = points[from].i + king_moves[m].dx, j = points[from].j + king_moves[m].dy;
       const char kind = kind_at(i, j);
       const bool over = ends_episode(points[from]);
       builder.transition(s, a, over || kind == '#' ? s : state_at[slot(i, j)], 1);
@@ -95,7 +96,7 @@ Model<double> gridworld_lattice(const GridworldLatticeOptions& options) {
   const std::vector<LatticePoint> points = free_points();
   Model<double> model{.mdp = mdp_on(points, options)};
   model.name = "discretised Gridworld";
-  for (const Move& move : moves) model.action_names.emplace_back(move.name);
+  for (const Move& move : king_moves) model.action_names.emplace_back(move.name);
   model.geometry.kind = Geometry<double>::Kind::points;
   model.geometry.norm = Norm::linf;
   model.geometry.eps = options.eps;

@@ -14,7 +14,7 @@
 namespace maximin {
 namespace {
 
-using Kind = Geometry<double>::Kind;
+using GeometryKind = Geometry<double>::Kind;
 
 /// What a number costs: a hundred for each character that it takes to write it, and among equals the smaller is
 /// cheaper.
@@ -158,7 +158,7 @@ bool offer_simpler_kernel(Offers& offers) {
 
 bool offer_simpler_points(Offers& offers) {
   const auto& geometry = offers.draft().whole.geometry;
-  if (geometry.kind != Kind::points) return false;
+  if (geometry.kind != GeometryKind::points) return false;
   for (Eigen::Index i = geometry.points.cols() - 1; i >= 0 && geometry.points.cols() > 1; --i) {
     if (offers.offer([&](ModelDraft& d) { d.drop_dimension(i); })) return true;
   }
@@ -181,7 +181,7 @@ bool offer_simpler_points(Offers& offers) {
 bool offer_simpler_eps(Offers& offers) {
   const auto& geometry = offers.draft().whole.geometry;
   const auto& eps = geometry.eps;
-  if (!eps || geometry.kind == Kind::neighbourhoods) return false;
+  if (!eps || geometry.kind == GeometryKind::neighbourhoods) return false;
   for (const double simpler : {0.0, 1.0, std::floor(*eps), std::ceil(*eps), rounded(*eps, 1), rounded(*eps, 2)}) {
     if (offers.offer([&](ModelDraft& d) { d.whole.geometry.eps = simpler; })) return true;
   }
@@ -227,7 +227,7 @@ bool offer_one_simpler_reward(Offers& offers) {
 
 bool offer_one_simpler_coordinate(Offers& offers) {
   const auto& geometry = offers.draft().whole.geometry;
-  if (geometry.kind != Kind::points) return false;
+  if (geometry.kind != GeometryKind::points) return false;
   for (Eigen::Index s = 0; s < geometry.points.rows(); ++s) {
     for (Eigen::Index i = 0; i < geometry.points.cols(); ++i) {
       const double x = geometry.points(s, i);

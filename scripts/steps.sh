@@ -40,7 +40,8 @@ build() {
     shift
   done
   [ $# -gt 0 ] && shift && targets=(--target "$@")
-  cmake --preset "$preset" "${options[@]}" >"build/$preset.configure.log" 2>&1 || {
+  # All at once, sources are compiled several to a unit: a third of the time. Whoever works on the code builds them apart.
+  cmake --preset "$preset" -DCMAKE_UNITY_BUILD=ON "${options[@]}" >"build/$preset.configure.log" 2>&1 || {
     cat "build/$preset.configure.log" >&2
     return 1
   }

@@ -15,7 +15,7 @@ namespace maximin {
 namespace {
 
 using namespace internal;
-using Kind = CassandraToken::Kind;
+using TokenKind = CassandraToken::Kind;
 
 /// What a reference stands for: one index, or all of them.
 struct Range {
@@ -42,7 +42,7 @@ class CassandraReader {
 
   Model<Scalar> read() {
     read_start();
-    while (tokens_.peek().kind != Kind::end) read_line();
+    while (tokens_.peek().kind != TokenKind::end) read_line();
     std::vector<std::string> notes = std::move(preamble_.notes);
     std::optional<Scalar> in_file;
     const std::size_t line = preamble_.discount ? preamble_.discount->line : 0;
@@ -75,7 +75,7 @@ class CassandraReader {
     if (preamble_.start_form != Form::vector) return read_start_set(preamble_.start_form == Form::include);
     if (items.size() == 1 && items[0].is("uniform")) return;
     start_given_ = true;
-    if (items.size() == 1 && (states_ > 1 || items[0].kind == Kind::word || items[0].text == "0")) {
+    if (items.size() == 1 && (states_ > 1 || items[0].kind == TokenKind::word || items[0].text == "0")) {
       const std::size_t s = preamble_.states.index(source_, items[0]);
       start_.assign(states_, Scalar(0));
       start_[s] = Scalar(1);
@@ -125,14 +125,14 @@ class CassandraReader {
   /// A colon and a reference to a member of the set.
   Range read_reference(const CassandraSet& set) {
     take_colon(tokens_);
-    if (tokens_.take_if(Kind::star)) return {0, static_cast<std::size_t>(set.size()), true};
+    if (tokens_.take_if(TokenKind::star)) return {0, static_cast<std::size_t>(set.size()), true};
     const std::size_t i = set.index(source_, tokens_.take());
     return {i, i + 1, false};
   }
 
   Scalar read_probability() {
     const CassandraToken& next = tokens_.peek();
-    if (next.kind == Kind::minus) source_.fail(next.line, "negative probability, expected 0 to 1");
+    if (next.kind == TokenKind::minus) source_.fail(next.line, "negative probability, expected 0 to 1");
     if (!next.is_number()) tokens_.fail_at_next("a probability");
     const CassandraToken token = tokens_.take();
     const auto p = read_number<Scalar>(source_, token.line, "probability", token.text);
@@ -210,7 +210,7 @@ class CassandraReader {
     const std::size_t line = tokens_.peek().line;
     const Range a = read_reference(preamble_.actions);
     const Range every{0, states_, true};
-    if (tokens_.peek().kind != Kind::colon) {
+    if (tokens_.peek().kind != TokenKind::colon) {
       if (take_word("uniform")) return write_uniform(transitions_, a, every, line);
       if (take_word("identity")) {
         return write_rows(transitions_, a, every, line, 1,
@@ -220,7 +220,8 @@ class CassandraReader {
       return;
     }
     const Range s = read_reference(preamble_.states);
-    if (tokens_.peek().kind == Kind::colon) return write_entry(transitions_, a, s, read_reference(preamble_.states));
+    if (tokens_.peek().kind == TokenKind::colon)
+      return write_entry(transitions_, a, s, read_reference(preamble_.states));
     if (take_word("uniform")) return write_uniform(transitions_, a, s, line);
     if (take_word("reset")) {
       return write_rows(transitions_, a, s, line, states_, [&](std::size_t row, std::size_t) {
@@ -236,21 +237,22 @@ class CassandraReader {
     const std::size_t line = tokens_.peek().line;
     const Range a = read_reference(preamble_.actions);
     const Range every{0, states_, true};
-    if (tokens_.peek().kind != Kind::colon) {
+    if (tokens_.peek().kind != TokenKind::colon) {
       if (take_word("uniform")) return write_uniform(observed_, a, every, line);
       for (std::size_t s = 0; s < states_; ++s) read_row(observed_, a, {s, s + 1, false});
       return;
     }
     const Range s = read_reference(preamble_.states);
-    if (tokens_.peek().kind == Kind::colon) return write_entry(observed_, a, s, read_reference(preamble_.observations));
+    if (tokens_.peek().kind == TokenKind::colon)
+      return write_entry(observed_, a, s, read_reference(preamble_.observations));
     if (take_word("uniform")) return write_uniform(observed_, a, s, line);
     read_row(observed_, a, s);
   }
 
   void read_reward_values(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      const bool negative = tokens_.take_if(Kind::minus);
-      if (!negative) tokens_.take_if(Kind::plus);
+      const bool negative = tokens_.take_if(TokenKind::minus);
+      if (!negative) tokens_.take_if(TokenKind::plus);
       if (!tokens_.peek().is_number()) tokens_.fail_at_next("a reward");
       const CassandraToken token = tokens_.take();
       const auto value = read_number<Scalar>(source_, token.line, "reward", token.text);
@@ -262,7 +264,7 @@ class CassandraReader {
     using Shape = typename CassandraRewards<Scalar>::Shape;
     constexpr std::int64_t all = CassandraRewards<Scalar>::all;
     const bool partial = preamble_.observations.given();
-    const auto more = [&] { return tokens_.peek().kind == Kind::colon; };
+    const auto more = [&] { return tokens_.peek().kind == TokenKind::colon; };
     typename CassandraRewards<Scalar>::Rule rule{all, all, all, all, Shape::one, rewards_.next_value(), line};
     std::size_t count = 1;
     rule.action = read_reference(preamble_.actions).index();
@@ -281,7 +283,7 @@ class CassandraReader {
           rule.observation = read_reference(preamble_.observations).index();
         } else if (more()) {
           take_colon(tokens_);
-          if (!tokens_.take_if(Kind::star)) tokens_.fail_at_next("'*': an MDP has no observations");
+          if (!tokens_.take_if(TokenKind::star)) tokens_.fail_at_next("'*': an MDP has no observations");
         } else if (partial) {
           rule.shape = Shape::by_observation;
           count = observations_;

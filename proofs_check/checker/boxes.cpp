@@ -35,7 +35,7 @@ Table rounded(const Table& x, std::size_t bits, bool up) {
 
 using Lists = std::vector<Indices>;
 
-std::string shown(const Indices& actions) {
+std::string listed(const Indices& actions) {
   std::string text;
   for (const std::size_t a : actions) text += (text.empty() ? "{" : ", ") + std::to_string(a);
   return text + "}";
@@ -46,7 +46,7 @@ void expect_lists(const Node& node, const Model& m, const Lists& expected, std::
   for (std::size_t s = 0; s < m.states; ++s) {
     const Indices found = lists[s].indices(lists[s].items().size(), m.actions);
     if (found == expected[s]) continue;
-    refuse(lists[s].path(), "not the actions of round " + std::to_string(n) + ", expected " + shown(expected[s]));
+    refuse(lists[s].path(), "not the actions of round " + std::to_string(n) + ", expected " + listed(expected[s]));
   }
 }
 

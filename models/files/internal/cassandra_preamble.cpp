@@ -9,7 +9,7 @@ namespace maximin::internal {
 
 namespace {
 
-using Kind = CassandraToken::Kind;
+using TokenKind = CassandraToken::Kind;
 
 class PreambleReader {
  public:
@@ -44,7 +44,7 @@ class PreambleReader {
  private:
   bool ended() const {
     const CassandraToken& next = tokens_.peek();
-    return next.kind == Kind::end || next.is("T") || next.is("O") || next.is("R");
+    return next.kind == TokenKind::end || next.is("T") || next.is("O") || next.is("R");
   }
 
   void read_discount(const CassandraToken& keyword) {
@@ -82,7 +82,7 @@ class PreambleReader {
 
   static bool is_start_item(const CassandraToken& token) {
     return token.is_number() || token.is("uniform") ||
-           (token.kind == Kind::word && !is_reserved_in_cassandra(token.text));
+           (token.kind == TokenKind::word && !is_reserved_in_cassandra(token.text));
   }
 
   CassandraTokens& tokens_;
@@ -93,7 +93,7 @@ class PreambleReader {
 }  // namespace
 
 void take_colon(CassandraTokens& tokens) {
-  if (!tokens.take_if(Kind::colon)) tokens.fail_at_next("':'");
+  if (!tokens.take_if(TokenKind::colon)) tokens.fail_at_next("':'");
 }
 
 void CassandraSet::read(CassandraTokens& tokens, std::string_view kind) {
@@ -103,13 +103,13 @@ void CassandraSet::read(CassandraTokens& tokens, std::string_view kind) {
   given_ = true;
   kind_ = kind;
   take_colon(tokens);
-  if (tokens.peek().kind == Kind::integer) {
+  if (tokens.peek().kind == TokenKind::integer) {
     const CassandraToken count = tokens.take();
     size_ = parse_count(count.text).value_or(0);
     if (size_ < 1) source.fail(count.line, fmt::format("0 {}s, expected at least 1", kind));
     return;
   }
-  while (tokens.peek().kind == Kind::word && !is_reserved_in_cassandra(tokens.peek().text)) {
+  while (tokens.peek().kind == TokenKind::word && !is_reserved_in_cassandra(tokens.peek().text)) {
     const CassandraToken name = tokens.take();
     if (!index_.emplace(name.text, names_.size()).second) {
       source.fail(name.line, fmt::format("{} {} given twice, expected distinct names", kind, in_quotes(name.text)));
@@ -121,16 +121,16 @@ void CassandraSet::read(CassandraTokens& tokens, std::string_view kind) {
 }
 
 std::size_t CassandraSet::index(const Source& source, const CassandraToken& token) const {
-  if (token.kind == Kind::integer) {
+  if (token.kind == TokenKind::integer) {
     const std::uint64_t value = parse_count(token.text).value_or(size_);
     if (value < size_) return static_cast<std::size_t>(value);
-  } else if (token.kind == Kind::word) {
+  } else if (token.kind == TokenKind::word) {
     const auto found = index_.find(token.text);
     if (found != index_.end()) return found->second;
   }
   const std::string numbers = fmt::format("0 to {}", size_ - 1);
   source.fail(token.line, fmt::format("{}: no such {}, expected {}",
-                                      token.kind == Kind::end ? "end of file" : in_quotes(token.text), kind_,
+                                      token.kind == TokenKind::end ? "end of file" : in_quotes(token.text), kind_,
                                       names_.empty() ? numbers : fmt::format("one of its names or {}", numbers)));
 }
 

@@ -9,7 +9,7 @@ namespace maximin::internal {
 
 namespace {
 
-using Kind = CassandraToken::Kind;
+using TokenKind = CassandraToken::Kind;
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -25,22 +25,22 @@ bool in_word(char c) {
 }
 
 /// Length of `digits [. digits] [e [+-] digits]` at the front of the text, which begins with a digit.
-std::size_t number_length(std::string_view text, Kind& kind) {
+std::size_t number_length(std::string_view text, TokenKind& kind) {
   const auto skip_digits = [&](std::size_t i) {
     while (i < text.size() && is_digit(text[i])) ++i;
     return i;
   };
-  kind = Kind::integer;
+  kind = TokenKind::integer;
   std::size_t end = skip_digits(0);
   if (end < text.size() && text[end] == '.') {
-    kind = Kind::decimal;
+    kind = TokenKind::decimal;
     end = skip_digits(end + 1);
   }
   if (end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
     std::size_t digits = end + 1;
     if (digits < text.size() && (text[digits] == '+' || text[digits] == '-')) ++digits;
     if (digits < text.size() && is_digit(text[digits])) {
-      kind = Kind::decimal;
+      kind = TokenKind::decimal;
       end = skip_digits(digits);
     }
   }
@@ -62,19 +62,19 @@ CassandraToken CassandraTokens::take() {
   return token;
 }
 
-bool CassandraTokens::take_if(Kind kind) {
+bool CassandraTokens::take_if(TokenKind kind) {
   if (next_.kind != kind) return false;
   read();
   return true;
 }
 
 void CassandraTokens::fail_at_next(std::string_view expected) const {
-  source_.fail(next_.line, next_.kind == Kind::end
+  source_.fail(next_.line, next_.kind == TokenKind::end
                                ? fmt::format("the file ends, expected {}", expected)
                                : fmt::format("{}: unexpected, expected {}", in_quotes(next_.text), expected));
 }
 
-void CassandraTokens::give(Kind kind, std::size_t length) {
+void CassandraTokens::give(TokenKind kind, std::size_t length) {
   next_ = {kind, rest_.substr(0, length), line_};
   rest_.remove_prefix(length);
 }
@@ -84,21 +84,21 @@ void CassandraTokens::read() {
     if (rest_.front() == '\n') ++line_;
     rest_.remove_prefix(rest_.front() == '#' ? std::min(rest_.find('\n'), rest_.size()) : 1);
   }
-  if (rest_.empty()) return give(Kind::end, 0);
+  if (rest_.empty()) return give(TokenKind::end, 0);
   const char c = rest_.front();
   if (is_digit(c)) {
-    Kind kind{};
+    TokenKind kind{};
     const std::size_t length = number_length(rest_, kind);
     return give(kind, length);
   }
   if (is_letter(c)) {
     const auto end = std::find_if_not(rest_.begin(), rest_.end(), in_word);
-    return give(Kind::word, static_cast<std::size_t>(end - rest_.begin()));
+    return give(TokenKind::word, static_cast<std::size_t>(end - rest_.begin()));
   }
-  if (c == '*') return give(Kind::star, 1);
-  if (c == ':') return give(Kind::colon, 1);
-  if (c == '+') return give(Kind::plus, 1);
-  if (c == '-') return give(Kind::minus, 1);
+  if (c == '*') return give(TokenKind::star, 1);
+  if (c == ':') return give(TokenKind::colon, 1);
+  if (c == '+') return give(TokenKind::plus, 1);
+  if (c == '-') return give(TokenKind::minus, 1);
   source_.fail(line_, fmt::format("{}: not part of the format, expected names, numbers, '*', ':' or a '#' comment",
                                   in_quotes(rest_.substr(0, std::max<std::size_t>(1, utf8_length(rest_))))));
 }

@@ -6,22 +6,22 @@
 
 namespace maximin::internal {
 
-using Kind = JsonValue::Kind;
+using JsonKind = JsonValue::Kind;
 
 /// Fills a document from the events of nlohmann's parser.
 class JsonDocument::Builder : public nlohmann::json_sax<nlohmann::json> {
  public:
   Builder(JsonDocument& document, std::string_view text) : document_(document), text_(text) {}
 
-  bool null() override { return leaf(Kind::null, "null"); }
-  bool boolean(bool value) override { return leaf(Kind::boolean, value ? "true" : "false"); }
-  bool number_integer(number_integer_t value) override { return leaf(Kind::number, std::to_string(value)); }
-  bool number_unsigned(number_unsigned_t value) override { return leaf(Kind::number, std::to_string(value)); }
-  bool number_float(number_float_t, const string_t& text) override { return leaf(Kind::number, text); }
-  bool string(string_t& value) override { return leaf(Kind::string, value); }
+  bool null() override { return leaf(JsonKind::null, "null"); }
+  bool boolean(bool value) override { return leaf(JsonKind::boolean, value ? "true" : "false"); }
+  bool number_integer(number_integer_t value) override { return leaf(JsonKind::number, std::to_string(value)); }
+  bool number_unsigned(number_unsigned_t value) override { return leaf(JsonKind::number, std::to_string(value)); }
+  bool number_float(number_float_t, const string_t& text) override { return leaf(JsonKind::number, text); }
+  bool string(string_t& value) override { return leaf(JsonKind::string, value); }
   bool binary(binary_t&) override { return false; }
-  bool start_object(std::size_t) override { return open(Kind::object); }
-  bool start_array(std::size_t) override { return open(Kind::array); }
+  bool start_object(std::size_t) override { return open(JsonKind::object); }
+  bool start_array(std::size_t) override { return open(JsonKind::array); }
   bool end_array() override { return close(); }
 
   bool key(string_t& name) override {
@@ -55,7 +55,7 @@ class JsonDocument::Builder : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  std::uint32_t add(Kind kind) {
+  std::uint32_t add(JsonKind kind) {
     // Indices are 32 bits; the limit on a file's bytes keeps them far below.
     if (document_.nodes_.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
       throw InputError(document_.file() + ": too many values, expected at most 2147483647");
@@ -73,7 +73,7 @@ class JsonDocument::Builder : public nlohmann::json_sax<nlohmann::json> {
     return index;
   }
 
-  bool leaf(Kind kind, std::string_view text) {
+  bool leaf(JsonKind kind, std::string_view text) {
     Node& node = document_.nodes_[add(kind)];
     node.text_begin = document_.texts_.size();
     node.text_length = static_cast<std::uint32_t>(text.size());
@@ -81,7 +81,7 @@ class JsonDocument::Builder : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  bool open(Kind kind) {
+  bool open(JsonKind kind) {
     open_.push_back(add(kind));
     if (open_.size() > max_depth) {
       throw InputError(fmt::format("{}: nested more than {} deep, expected a model", document_.file(), max_depth));
@@ -130,7 +130,7 @@ std::string JsonDocument::path(std::uint32_t index) const {
   while (index != 0) {
     const Node& node = nodes_[index];
     const Node& parent = nodes_[node.parent];
-    if (parent.kind == Kind::object) {
+    if (parent.kind == JsonKind::object) {
       const std::string_view key = slice(node.key_begin, node.key_length);
       const bool plain = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
         return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -151,7 +151,7 @@ JsonValue::Iterator& JsonValue::Iterator::operator++() {
   return *this;
 }
 
-Kind JsonValue::kind() const {
+JsonKind JsonValue::kind() const {
   return document_->nodes_[index_].kind;
 }
 
@@ -187,7 +187,7 @@ void JsonValue::fail(std::string_view message) const {
 }
 
 JsonValue JsonValue::array(std::string_view name) const {
-  if (kind() != Kind::array) fail(fmt::format("not an array, expected {}", name));
+  if (kind() != JsonKind::array) fail(fmt::format("not an array, expected {}", name));
   return *this;
 }
 
@@ -197,30 +197,30 @@ JsonValue JsonValue::array(std::string_view name, std::size_t wanted) const {
 }
 
 JsonValue JsonValue::object(std::string_view name) const {
-  if (kind() != Kind::object) fail(fmt::format("not an object, expected {}", name));
+  if (kind() != JsonKind::object) fail(fmt::format("not an object, expected {}", name));
   return *this;
 }
 
 std::string_view JsonValue::string(std::string_view name) const {
-  if (kind() != Kind::string) fail(fmt::format("not a string, expected {}", name));
+  if (kind() != JsonKind::string) fail(fmt::format("not a string, expected {}", name));
   return text();
 }
 
 bool JsonValue::boolean(std::string_view name) const {
-  if (kind() != Kind::boolean) fail(fmt::format("neither true nor false, expected one: {}", name));
+  if (kind() != JsonKind::boolean) fail(fmt::format("neither true nor false, expected one: {}", name));
   return text() == "true";
 }
 
 std::uint64_t JsonValue::count(std::string_view name) const {
-  const std::optional<std::uint64_t> value = kind() == Kind::number ? parse_count(text()) : std::nullopt;
+  const std::optional<std::uint64_t> value = kind() == JsonKind::number ? parse_count(text()) : std::nullopt;
   if (!value) fail(fmt::format("{}: not a non-negative integer, expected one", name));
   return *value;
 }
 
 std::uint32_t JsonValue::index(std::string_view name, std::size_t below) const {
-  const std::optional<std::uint64_t> value = kind() == Kind::number ? parse_count(text()) : std::nullopt;
+  const std::optional<std::uint64_t> value = kind() == JsonKind::number ? parse_count(text()) : std::nullopt;
   if (!value || *value >= below) {
-    const std::string shown = kind() == Kind::array || kind() == Kind::object ? "" : " " + in_quotes(text());
+    const std::string shown = kind() == JsonKind::array || kind() == JsonKind::object ? "" : " " + in_quotes(text());
     fail(fmt::format("{}{}: no such {}, expected an integer from 0 to {}", name, shown, name, below - 1));
   }
   return static_cast<std::uint32_t>(*value);
