@@ -6,6 +6,7 @@
 #include <maximin/proofs_check/certificate/bounds_certificate.hpp>
 #include <maximin/proofs_check/certificate/exact_claims.hpp>
 #include <maximin/proofs_check/certificate/exact_geometry.hpp>
+#include <maximin/proofs_check/certificate/orbit_search.hpp>
 #include <maximin/proofs_check/certificate/witnesses.hpp>
 #include <maximin/tabular/scaled.hpp>
 
@@ -62,7 +63,7 @@ class BoundsCertifier {
       if (n + 1 < next_attempt && n + 1 < options_.max_rounds) continue;
       next_attempt *= 2;
       options_.begin("boxes from round", n + 1);
-      result_.limit = boxes_.limit_after(*before, period());
+      result_.limit = boxes_.limit_after(*before, std::max(1L, period_at_end(result_.rounds, options_.max_period)));
       if (!result_.limit) continue;
       result_.gap = claims_.boxed_limit(n + 1, *result_.limit);
       if (claims_.rounds_hold()) return;
@@ -92,16 +93,6 @@ class BoundsCertifier {
       if (apart(choices, candidates(round.q, {&s, 1}, options_.tie))) result_.pessimism_changes_action = true;
       if (apart(choices, round.provoked[static_cast<std::size_t>(s)])) result_.attack_changes_action = true;
     }
-  }
-
-  /// The smallest period that the rounds have had for twice as long; 1 if none.
-  long period() const {
-    const auto& rounds = result_.rounds;
-    const auto n = static_cast<long>(rounds.size());
-    for (long k = 1; k <= options_.max_period && 3 * k <= n; ++k) {
-      if (std::equal(rounds.end() - 2 * k, rounds.end(), rounds.end() - 3 * k)) return k;
-    }
-    return 1;
   }
 
   void test_time() {

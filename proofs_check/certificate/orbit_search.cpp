@@ -33,16 +33,4 @@ std::optional<EnteredOrbit> OrbitSearch::after_round(Policy composed, const Scal
   return std::nullopt;
 }
 
-long OrbitSearch::period() const {
-  const auto n = static_cast<long>(composed_.size());
-  for (long k = 1; k <= options_.max_period && 3 * k <= n; ++k) {
-    bool repeats = true;
-    for (long i = 1; i <= 2 * k && repeats; ++i) {
-      repeats = composed_[static_cast<std::size_t>(n - i)] == composed_[static_cast<std::size_t>(n - i - k)];
-    }
-    if (repeats) return k;
-  }
-  return 0;
-}
-
 }  // namespace maximin

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <vector>
@@ -10,6 +11,16 @@
 #include <maximin/theory/perturbation.hpp>
 
 namespace maximin {
+
+/// The least period, of at most `most`, that a sequence has had at its end for twice as long; 0 if none.
+template <class T>
+long period_at_end(const std::vector<T>& sequence, long most) {
+  const auto n = static_cast<long>(sequence.size());
+  for (long k = 1; k <= most && 3 * k <= n; ++k) {
+    if (std::equal(sequence.end() - 2 * k, sequence.end(), sequence.end() - 3 * k)) return k;
+  }
+  return 0;
+}
 
 /// An orbit to which Q_N lies so near that it is known what all later rounds do.
 struct EnteredOrbit {
@@ -35,8 +46,8 @@ class OrbitSearch {
   /// Whether that happened so often that it will not be settled.
   bool hopeless() const { return hopeless_; }
 
-  /// The smallest period that what is done has had for twice as long, or 0.
-  long period() const;
+  /// Of what is done, as by `period_at_end`.
+  long period() const { return period_at_end(composed_, options_.max_period); }
 
  private:
   struct Candidate {
