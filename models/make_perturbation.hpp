@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include <maximin/models/model.hpp>
@@ -69,7 +70,14 @@ Perturbation<Scalar> make_perturbation(const Model<Scalar>& model, const Geometr
       case Kind::hops:
         break;
     }
-    return {Metric<Scalar>::from_shortest_paths(hop_distances(model.mdp)), *g.eps};
+    const auto hops = Metric<Scalar>::from_shortest_paths(hop_distances(model.mdp));
+    if constexpr (!std::numeric_limits<Scalar>::has_infinity) {  // |S| hops stand for no path, however large eps is
+      return Perturbation<Scalar>::decided_by(hops, *g.eps, [&, n = Scalar(model.mdp.states())](State s, State t) {
+        const Scalar d = hops.distance(s, t);
+        return d <= *g.eps && d < n;
+      });
+    }
+    return {hops, *g.eps};
   }();
   if (balls.states() != model.mdp.states()) {
     throw InputError("geometry: of " + std::to_string(balls.states()) + " states, expected the model's " +

@@ -1129,16 +1129,23 @@ def start(low, high):
     return max(Fraction(0), largest(low)) + max(Fraction(0), -least)
 
 
+def complain(line):
+    try:
+        print(line, file=sys.stderr, flush=True)
+    except OSError:  # the exit code still counts
+        pass
+
+
 def report(file):
     """Checks one file and prints; returns its exit code."""
     shown = file if file.isprintable() else ascii(file)
     try:
         rows = check_certificate(read_json(file))
     except NotACertificate as error:
-        print(f"{shown}: {error}", file=sys.stderr)
+        complain(f"{shown}: {error}")
         return 2
     except Exception as error:  # such as MemoryError: without this Python would exit 1, which says "violated"
-        print(f"{shown}: $: not checked, {type(error).__name__}, expected a certificate that can be", file=sys.stderr)
+        complain(f"{shown}: $: not checked, {type(error).__name__}, expected a certificate that can be")
         return 2
     rows = [("claim", "verdict", "left", "right", "tightest at")] + rows
     widths = [max(len(row[i]) for row in rows) for i in range(5)]
@@ -1166,5 +1173,18 @@ def main(arguments):
     return max(map(report, arguments), key=CODES_FROM_BEST.index)
 
 
+def run(arguments):
+    """The exit code of main, and 74 where standard output cannot be written: 1 says "violated"."""
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
+    try:
+        if sys.stdout is None:
+            return 74
+        code = main(arguments)
+        sys.stdout.flush()
+        return code
+    except OSError:
+        return 74
+
+
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    os._exit(run(sys.argv[1:]))  # nothing is flushed again, which could fail again

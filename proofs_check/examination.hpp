@@ -38,7 +38,8 @@ struct ExaminationOptions {
 
   std::function<void(const char* stage, long n)> progress = {};  ///< of exact work: as CertifyOptions has it
 
-  bool wants(ClaimId id) const { return !only || only->contains(id); }
+  /// Whether the claim is asked for; by bounds lemma 3 never is.
+  bool wants(ClaimId id) const { return (!only || only->contains(id)) && !(by_bounds && id == ClaimId::lemma_3); }
   /// Whether what holds is told as undetermined, since it only held within rounding.
   bool doubts_what_holds() const { return pedantic && !exact; }
 };

@@ -92,8 +92,10 @@ std::string conclusion(const CampaignSummary& s, std::string_view draw, bool com
           counted(s.trials, "model"), 100 * s.violation_upper_limit(),
           s.undetermined == 0
               ? ""
-              : fmt::format("Some claim is undetermined on {} of them: a budget ran out.\n", s.undetermined),
-          options.exact ? "Proved for each of them in exact arithmetic; of other models nothing is proved."
+              : fmt::format("Some claim is undetermined on {} of them: {}.\n", s.undetermined,
+                            options.by_bounds ? "bounds do not show what holds with next to nothing to spare"
+                                              : "a budget ran out"),
+          options.exact ? "What holds is proved in exact arithmetic, for each model; of other models nothing is proved."
                         : "Seen in floating point, with certified numerical error; not a proof.");
   }
 }
@@ -205,8 +207,9 @@ std::string verdict_text(const CampaignSummary& s, const ExaminationOptions& opt
       "states: verify_bound --explain\n\n",
       options.exact ? "left / right where right - left\n  is least on a model, not of the largest left / right"
                     : "(left - slack) / right");
-  text += fmt::format("Q_n settled on {}, cycled on {}{}, neither on {}\n", s.settled, s.cycles, periods(s),
-                      s.fate_undetermined);
+  text += options.by_bounds ? "Q_n: enclosed, not followed\n"
+                            : fmt::format("Q_n settled on {}, cycled on {}{}, neither on {}\n", s.settled, s.cycles,
+                                          periods(s), s.fate_undetermined);
   text += fmt::format(
       "Covered: a ball of several states on {}, the attack changes the action on {}, pessimism does on {}\n",
       s.balls_of_several, s.attack_changes_action, s.pessimism_changes_action);

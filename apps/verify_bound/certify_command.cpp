@@ -1,6 +1,5 @@
 #include "certify_command.hpp"
 
-#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -17,6 +16,7 @@
 #include <maximin/proofs_check/examination.hpp>
 #include <maximin/proofs_check/trial_record.hpp>
 
+#include "exact_text.hpp"
 #include "options.hpp"
 #include "outcome.hpp"
 #include "shared_options.hpp"
@@ -24,17 +24,10 @@
 namespace maximin::verify_bound {
 namespace {
 
-/// x beyond floating point in six digits.
-std::string huge(const Rational& x) {
-  const std::string digits = Integer(abs(numerator(x)) / denominator(x)).str();
-  return fmt::format("{}{}.{}e+{}", x < 0 ? "-" : "", digits[0], digits.substr(1, 5), digits.size() - 1);
-}
-
 /// x in six digits, and exactly where that is as short.
 std::string shown(const Rational& x) {
   const std::string exact = x.str();
-  const auto near = static_cast<double>(x);
-  const std::string rounded = std::isfinite(near) ? apps::number(near) : huge(x);
+  const std::string rounded = six_digits(x);
   return exact == rounded || exact.size() > 14 ? rounded : fmt::format("{} = {}", rounded, exact);
 }
 
@@ -172,8 +165,9 @@ void declare(CLI::App& command, CertifyCommand& o) {
   command
       .add_option("--arith", o.arith,
                   "exact, rational numbers (the default); or certified, bounds in\n"
-                  "their place: for thousands of states, never says violated,\n"
-                  "leaves lemma-3 out")
+                  "their place: for thousands of states; never says violated,\n"
+                  "leaves open what holds with nothing to spare, leaves out\n"
+                  "lemma-3, and lemma-1 too above 1,000 states")
       ->check(apps::one_of({"exact", "certified"}))
       ->type_name("WORD")
       ->group(group);

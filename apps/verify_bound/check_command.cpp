@@ -12,6 +12,7 @@
 #include <maximin/apps/common/table.hpp>
 #include <maximin/proofs_check/checker/checker.hpp>
 
+#include "exact_text.hpp"
 #include "outcome.hpp"
 
 namespace maximin::verify_bound {
@@ -29,10 +30,10 @@ Outcome outcome_of(const checker::Report& report) {
   return report.worst() == "undetermined" ? Outcome::undetermined : Outcome::holds;
 }
 
-/// An exact number, cut where it is long.
+/// An exact number; in six digits where it is long.
 std::string shown(const std::string& number) {
   constexpr std::size_t longest = 24;
-  return number.size() <= longest ? number : fmt::format("{}... ({} characters)", number.substr(0, 10), number.size());
+  return number.size() <= longest ? number : "~" + six_digits(Rational(number));
 }
 
 std::string text(const std::string& file, const checker::Report& report) {

@@ -116,7 +116,7 @@ std::vector<double> near_values(const Game& game) {
       size = std::max(size, std::abs(next[i]));
     }
     w.swap(next);
-    if (!(change > 1e-14 * (1 + size))) break;
+    if (!(change > 1e-14 * size)) break;
   }
   w.pop_back();
   return w;
@@ -149,8 +149,9 @@ std::vector<Rational> exact_values(const Game& game, const std::vector<double>& 
 
 /// Values with W <= TW, checked exactly: floating point, taken down by more and more until they are.
 std::optional<std::vector<Rational>> lower_bounds(const Game& game, const std::vector<double>& near) {
-  double size = 1;
+  double size = 0;
   for (const double w : near) size = std::max(size, std::abs(w));
+  if (!(size > 0)) size = 1;
   const Rational grid(std::exp2(std::floor(std::log2(size)) - 40));
   for (Rational down(0); down <= Rational(size); down = down == 0 ? grid : Rational(16 * down)) {
     std::vector<Rational> w;

@@ -39,7 +39,6 @@ struct BoundsCertificate {
   State largest_ball = 0;
   bool pessimism_changes_action = false;  ///< for sure: at some observation maximin and greedy have no choice in common
   bool attack_changes_action = false;     ///< for sure: in some state no choice of its own can be provoked
-  Rational gap;  ///< max over the phases of the limit of the upper bound of Q* less back(below)
 
   bool any(Verdict verdict) const;
 };

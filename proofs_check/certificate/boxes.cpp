@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <maximin/proofs_check/certificate/certificate.hpp>
 #include <maximin/tabular/exact_control.hpp>
 #include <maximin/tabular/optimal_attack.hpp>
 #include <maximin/theory/bellman.hpp>
@@ -52,12 +53,13 @@ Choices provokable(const Perturbation<Rational>& balls, const Choices& choices) 
       balls, [&](State t) -> const std::vector<Action>& { return choices[static_cast<std::size_t>(t)]; });
 }
 
-double largest_value(const FiniteMdp<Rational>& mdp) {
+/// max|R|/(1-gamma): no value is larger.
+Rational largest_value(const FiniteMdp<Rational>& mdp) {
   Rational largest(0);
   for (Eigen::Index i = 0; i < mdp.rewards().size(); ++i) {
     largest = std::max(largest, Rational(abs(mdp.rewards().data()[i])));
   }
-  return static_cast<double>(Rational(largest / (1 - mdp.discount())));
+  return largest / (1 - mdp.discount());
 }
 
 }  // namespace
@@ -99,9 +101,12 @@ template Choices candidates(const TableBox<Integer>&, const Perturbation<Rationa
 // ---- The grid ----
 
 Grid::Grid(const FiniteMdp<Rational>& mdp) {
-  constexpr long places = 60, most = 2'000;
-  const double size = largest_value(mdp);
-  const long exponent = size > 0 && std::isfinite(size) ? std::ilogb(size) : 0;
+  constexpr long places = 60, most = 100'000;
+  const Rational size = largest_value(mdp);
+  const long exponent =
+      size == 0 ? 0
+                : static_cast<long>(boost::multiprecision::msb(boost::multiprecision::numerator(size))) -
+                      static_cast<long>(boost::multiprecision::msb(boost::multiprecision::denominator(size)));
   bits_ = std::clamp(places - exponent, 0L, most);
   denominator_ = Integer(1) << static_cast<unsigned>(bits_);
 }
@@ -126,8 +131,14 @@ Integer Grid::up(double x) const {
 
 // ---- Rounds ----
 
-Boxes::Boxes(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls, const ScaledMdp& scaled, TieBreak tie)
-    : mdp_(mdp), balls_(balls), scaled_(scaled), tie_(tie), grid_(mdp), all_(static_cast<std::size_t>(mdp.states())) {
+Boxes::Boxes(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls, const ScaledMdp& scaled,
+             const CertifyOptions& options)
+    : mdp_(mdp),
+      balls_(balls),
+      scaled_(scaled),
+      options_(options),
+      grid_(mdp),
+      all_(static_cast<std::size_t>(mdp.states())) {
   try {
     rounded_ = internal::rounded(mdp);
   } catch (const InputError&) {  // then bounds are as wide as they need to be
@@ -155,7 +166,7 @@ RoundBox Boxes::round_after(const ValueBox& passed) const {
 }
 
 void Boxes::look(RoundBox& round) const {
-  round.choices = candidates(round.q, balls_, tie_);
+  round.choices = candidates(round.q, balls_, options_.tie);
   round.passed.low.denominator = round.passed.high.denominator = grid_.denominator();
   for (State s = 0; s < mdp_.states(); ++s) {
     const auto [low, high] = attacked(round.q, round.choices, balls_.ball(s), s);
@@ -248,7 +259,7 @@ Boxes::Rounded Boxes::widened_image(const Rounded& box, double margin) const {
   TableBox<double> q;
   backup(*rounded_, box.low, q.low);
   backup(*rounded_, box.high, q.high);
-  const Choices choices = candidates(q, balls_, tie_);
+  const Choices choices = candidates(q, balls_, options_.tie);
   Rounded image{Values<double>(mdp_.states()), Values<double>(mdp_.states())};
   for (State s = 0; s < mdp_.states(); ++s) {
     const auto [low, high] = attacked(q, choices, balls_.ball(s), s);
@@ -259,9 +270,10 @@ Boxes::Rounded Boxes::widened_image(const Rounded& box, double margin) const {
 }
 
 std::optional<BoxLimit> Boxes::limit_after(const ValueBox& last, long period) const {
-  constexpr int most_sweeps = 20'000;
   if (!rounded_) return std::nullopt;
-  const double gamma = static_cast<double>(mdp_.discount()), size = largest_value(mdp_);
+  const auto gamma = static_cast<double>(mdp_.discount()), size = static_cast<double>(largest_value(mdp_));
+  if (!std::isfinite(size / (1 - gamma))) return std::nullopt;
+  const double most_sweeps = std::min(1e6, 40 / (1 - gamma));  // e^-40 of what there was to come is left
   const double margin = size * std::max(1e-10 * (1 - gamma), 1e-13);
   std::vector<Rounded> phases(static_cast<std::size_t>(period));
   Rounded start{last.low.rational().cast<double>(), last.high.rational().cast<double>()};
@@ -270,12 +282,14 @@ std::optional<BoxLimit> Boxes::limit_after(const ValueBox& last, long period) co
   phases.back() = std::move(start);
   // Images are joined until they add next to nothing; the margin then makes up for what is left, and for rounding.
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    options_.poll();
     double grown = 0;
     for (std::size_t j = 0; j < phases.size(); ++j) {
       const Rounded& before = phases[j == 0 ? phases.size() - 1 : j - 1];
       grown = std::max(grown, phases[j].join(widened_image(before, margin)));
     }
-    if (!std::isfinite(grown)) return std::nullopt;
+    if (!std::isfinite(grown) || !std::isfinite(phases.back().low.sum() - phases.back().high.sum()))
+      return std::nullopt;
     if (grown <= margin / 2) return verified(phases, last);
   }
   return std::nullopt;

@@ -14,6 +14,8 @@
 /// docs/certificate-format.md. Floating point proposes, sweeps in integers prove.
 namespace maximin {
 
+struct CertifyOptions;
+
 /// Actions by observation, or by true state: none empty, each ascending.
 using Choices = std::vector<std::vector<Action>>;
 
@@ -84,7 +86,8 @@ class Boxes {
   enum class Side { below, above };
 
   /// All references must outlive this.
-  Boxes(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls, const ScaledMdp& scaled, TieBreak tie);
+  Boxes(const FiniteMdp<Rational>& mdp, const Perturbation<Rational>& balls, const ScaledMdp& scaled,
+        const CertifyOptions& options);
 
   const Grid& grid() const { return grid_; }
 
@@ -123,7 +126,7 @@ class Boxes {
   const FiniteMdp<Rational>& mdp_;
   const Perturbation<Rational>& balls_;
   const ScaledMdp& scaled_;
-  TieBreak tie_;
+  const CertifyOptions& options_;
   Grid grid_;
   std::optional<FiniteMdp<double>> rounded_;  // nothing where its numbers do not fit
   Choices all_;                               // actions, by state

@@ -82,7 +82,6 @@ struct Certificate {
 
   // Not written: what a campaign counts, and why there is no limit.
   bool ties_open = false;  ///< Q_n came near an orbit on which differences that vanish decide between choices
-  Rational boxes_gap;      ///< max over the boxes of Q* less `below`
   State largest_ball = 0;
   bool pessimism_changes_action = false;  ///< maximin and greedy differ in some round, at some observation
 
@@ -93,18 +92,20 @@ struct CertifyOptions {
   Reading reading = Reading::corrected;
   TieBreak tie = TieBreak::lowest_index;
   std::optional<std::set<ClaimId>> only = {};  ///< absent: all
-  long max_rounds = 2'000;                     ///< of exact pessimistic Q-iteration
+  long max_rounds = 2'000;                     ///< of pessimistic Q-iteration
   long max_period = 64;
   long rounds_before_boxes = 500;  ///< without an orbit, boxes are tried after these, twice these, ...
   long max_bits = 100'000;         ///< of the denominator of Q_n: more cost too much, and the limit is undetermined
   long max_positions = 20'000;   ///< (state, belief) pairs of claim F that are listed; others have a value that is sure
-  long max_pair_states = 1'000;  ///< Lemma 1 looks at pairs of states; of more states it is undetermined
+  long max_pair_states = 2'000;  ///< Lemma 1 looks at pairs of states; of more states it is undetermined
   long max_exact_positions = 150;           ///< more have lower bounds in the place of exact values
   const std::atomic<bool>* stop = nullptr;  ///< raised from elsewhere: ends with Interrupted
   /// Told what is begun, e.g. "round", and of which n, or -1.
   std::function<void(const char* stage, long n)> progress = {};
 
   bool wants(ClaimId id) const { return !only || only->contains(id); }
+  /// Throws Interrupted when it is to stop.
+  void poll() const;
   /// Tells what is begun. Throws Interrupted when it is to stop.
   void begin(const char* stage, long n = -1) const;
 };

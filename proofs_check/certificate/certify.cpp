@@ -22,9 +22,8 @@ namespace {
 /// The constants of the model. Throws AssumptionFails where there are none.
 ModelConstants<Rational> finite_constants(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry) {
   ModelConstants<Rational> c = model_constants(mdp, geometry);
-  if (c.finite()) return c;
-  const auto& bad = c.l_r.infinite ? c.l_r : c.l_p.infinite ? c.l_p : c.k_tv;
-  throw no_lipschitz_constant(bad.s1, bad.s2, c.l_r.infinite ? "rewards" : "transitions", bad.action);
+  refuse_infinite(c);
+  return c;
 }
 
 /// One model: solves what a certificate states of it, and shows it to the claims.
@@ -63,7 +62,7 @@ class Certifier {
   /// long, boxes are tried every so often: if they prove what is wanted, they end the search.
   void iterate() {
     OrbitSearch search(mdp_, scaled_, balls_, options_);
-    const Boxes boxes(mdp_, balls_, scaled_, options_.tie);
+    const Boxes boxes(mdp_, balls_, scaled_, options_);
     long next_boxes = options_.rounds_before_boxes;
     ScaledTable q{QTable<Integer>::Constant(mdp_.states(), mdp_.actions(), Integer(0)), 1};
     for (long n = 0;;) {
@@ -97,7 +96,7 @@ class Certifier {
       claims_.no_limit();
       return false;
     }
-    result_.boxes_gap = claims_.boxed_limit(n, *result_.boxes);
+    claims_.boxed_limit(n, *result_.boxes);
     return claims_.rounds_hold();
   }
 
@@ -164,8 +163,12 @@ class Certifier {
 
 }  // namespace
 
-void CertifyOptions::begin(const char* stage, long n) const {
+void CertifyOptions::poll() const {
   if (stop && *stop) throw Interrupted();
+}
+
+void CertifyOptions::begin(const char* stage, long n) const {
+  poll();
   if (progress) progress(stage, n);
 }
 

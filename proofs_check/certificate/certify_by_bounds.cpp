@@ -13,6 +13,9 @@
 namespace maximin {
 namespace {
 
+/// Lemma 1 looks at all pairs of states, and would take longer than all the rest.
+constexpr long most_pair_states = 1'000;
+
 /// One model: encloses what a certificate states of it, and shows it to the claims.
 class BoundsCertifier {
  public:
@@ -23,7 +26,7 @@ class BoundsCertifier {
         mdp_(model.mdp),
         balls_(geometry_.balls()),
         scaled_(model.mdp),
-        boxes_(mdp_, balls_, scaled_, options.tie),
+        boxes_(mdp_, balls_, scaled_, options),
         optimal_(boxes_.enclose_optimal()),
         low_(scaled_.backup(optimal_.low)),
         high_(scaled_.backup(optimal_.high)),
@@ -50,10 +53,11 @@ class BoundsCertifier {
 
  private:
   /// Runs rounds until boxes around all later ones prove what is wanted, or a budget ends them. They are tried at
-  /// N = 8, 16, 32, ...
+  /// N = 8, 16, 32, ... and in the end
   void iterate() {
     long next_attempt = 8;
     std::optional<ValueBox> before;
+    std::vector<Integer> reached;
     for (long n = 0; n < options_.max_rounds; ++n) {
       options_.begin("round", n);
       RoundBox round = before ? boxes_.round_after(*before) : boxes_.first_round();
@@ -65,8 +69,10 @@ class BoundsCertifier {
       options_.begin("boxes from round", n + 1);
       result_.limit = boxes_.limit_after(*before, std::max(1L, period_at_end(result_.rounds, options_.max_period)));
       if (!result_.limit) continue;
-      result_.gap = claims_.boxed_limit(n + 1, *result_.limit);
-      if (claims_.rounds_hold()) return;
+      claims_.boxed_limit(n + 1, *result_.limit);
+      const auto& below = result_.limit->pairs.front().below.numerators;
+      if (claims_.rounds_hold() || below == reached) return;  // or it comes no nearer
+      reached = below;
     }
     if (!result_.limit) claims_.no_limit();
   }
@@ -104,11 +110,9 @@ class BoundsCertifier {
   void beliefs() {
     if (!options_.wants(ClaimId::f_belief)) return;
     options_.begin("belief game");
-    CertifyOptions bounded = options_;
-    bounded.max_exact_positions = 0;
     const TableBox<Integer> q = q_star();
     result_.belief_game = certify_belief_game(
-        mdp_, geometry_, [&](std::span<const State> belief) { return candidates(q, belief, options_.tie); }, bounded);
+        mdp_, geometry_, [&](std::span<const State> belief) { return candidates(q, belief, options_.tie); }, options_);
     if (!result_.belief_game) return;
     claims_.beliefs(*result_.belief_game, start_values(*result_.belief_game, balls_), result_.l_star.value);
   }
@@ -134,8 +138,14 @@ class BoundsCertifier {
 
 BoundsCertificate certify_by_bounds(const Model<Rational>& model, const GeometryOverrides<Rational>& overrides,
                                     const CertifyOptions& options) {
+  if (options.only && options.only->contains(ClaimId::lemma_3)) {
+    throw InputError("claims: lemma-3 is not proved by bounds, expected others or --arith exact");
+  }
   options.begin("optimal values");
-  return BoundsCertifier(model, overrides, options).run();
+  CertifyOptions bounded = options;
+  bounded.max_exact_positions = 0;
+  bounded.max_pair_states = std::min(options.max_pair_states, most_pair_states);
+  return BoundsCertifier(model, overrides, bounded).run();
 }
 
 bool BoundsCertificate::any(Verdict verdict) const {

@@ -198,9 +198,8 @@ void ExactClaims::boxed_round(long n, const ValueBox* before, const RoundBox& ro
   finite_n(n, facts_[static_cast<std::size_t>(pair)].loss);
 }
 
-Rational ExactClaims::boxed_limit(long from, const BoxLimit& limit) {
+void ExactClaims::boxed_limit(long from, const BoxLimit& limit) {
   limit_ = {};
-  Rational gap(0);
   for (std::size_t j = 0; j < limit.phases.size(); ++j) {
     const long n = from + static_cast<long>(j);
     const ValueBox& before = limit.phases[j == 0 ? limit.phases.size() - 1 : j - 1].passed;
@@ -213,26 +212,22 @@ Rational ExactClaims::boxed_limit(long from, const BoxLimit& limit) {
     const Instance loss = largest_difference(optimal_, scaled_.backup(values.below), n, 0);
     at_limit(ClaimId::theorem_1).observe(against(loss, bounds::theorem_1(gamma_, delta_printed_), false));
     losses_in_phase(loss, false);
-    gap = std::max(gap, loss.left);
   }
-  return gap;
 }
 
 /// 0 <= T*Q_n - Q_{n+1} is at most gamma P D, where D is what the best action has over x_n, and 0 where the agent sees
 /// the truth.
 void ExactClaims::boxed_lemma_2(Tightest& claim, long n, const RoundBox& round) const {
   if (!options_.wants(ClaimId::lemma_2)) return;
-  const Integer widen = round.denominator / round.passed.low.denominator;
+  const Integer& grid = round.passed.low.denominator;
   ScaledValues lost;
-  lost.denominator = round.denominator;
+  lost.denominator = round.denominator * grid;
   for (State s = 0; s < scaled_.states(); ++s) {
     const auto i = static_cast<std::size_t>(s);
-    Integer best(0);
+    Integer& d = lost.numerators.emplace_back(0);
     if (misled_.numerators[i] != 0) {
-      best = round.q.high.row(s).maxCoeff();
-      best -= widen * round.passed.low.numerators[i];
+      d = round.q.high.row(s).maxCoeff() * grid - round.passed.low.numerators[i] * round.denominator;
     }
-    lost.numerators.push_back(std::move(best));
   }
   Instance instance = largest_entry(expected(lost), n, delta_printed_);
   instance.decisive = false;
@@ -275,15 +270,21 @@ CertifiedClaim ExactClaims::verdict(ClaimId id) const {
   return all.verdict(id, exact_);
 }
 
+bool ExactClaims::out_of_reach(ClaimId id) const {
+  return (id == ClaimId::lemma_1 && !lemma_1_) || (id == ClaimId::lemma_1_iterates && !lemma_1_iterates_);
+}
+
 bool ExactClaims::rounds_hold() const {
-  return std::all_of(std::begin(of_rounds), std::end(of_rounds),
-                     [&](ClaimId id) { return !options_.wants(id) || verdict(id).verdict == Verdict::holds; });
+  return std::all_of(std::begin(of_rounds), std::end(of_rounds), [&](ClaimId id) {
+    return !options_.wants(id) || out_of_reach(id) || verdict(id).verdict == Verdict::holds;
+  });
 }
 
 std::vector<CertifiedClaim> ExactClaims::verdicts() const {
   std::vector<CertifiedClaim> result;
   for (const Claim& c : claims()) {
-    if (options_.wants(c.id) && !(bounds_ && c.id == ClaimId::lemma_3)) result.push_back(verdict(c.id));
+    const bool left_out = bounds_ && (c.id == ClaimId::lemma_3 || (!options_.only && out_of_reach(c.id)));
+    if (options_.wants(c.id) && !left_out) result.push_back(verdict(c.id));
   }
   return result;
 }

@@ -46,11 +46,10 @@ class ExactClaims {
   void boxed_pair(long n, const PairBox& values);
   /// Round n of such a pair; `before` is what is known of x_{n-1}, if there is one.
   void boxed_round(long n, const ValueBox* before, const RoundBox& round, int pair);
-  /// The rounds n >= from, in boxes; what earlier ones were said to do is forgotten. Returns the largest Q* less
-  /// back(below).
-  Rational boxed_limit(long from, const BoxLimit& limit);
+  /// The rounds n >= from, in boxes; what earlier ones were said to do is forgotten.
+  void boxed_limit(long from, const BoxLimit& limit);
 
-  /// Whether every claim about rounds that is wanted holds.
+  /// Whether every claim about rounds that is wanted, and not out of reach, holds.
   bool rounds_hold() const;
 
   /// E: the values of the maximin policy of Q* against the optimal attacker.
@@ -59,7 +58,8 @@ class ExactClaims {
   /// F: the start values of the belief game.
   void beliefs(const CertifiedBeliefGame& game, const Values<Rational>& start, const Rational& l_star);
 
-  /// In the order of `claims`, those that are wanted; by bounds there is no lemma 3.
+  /// In the order of `claims`, those that are wanted; by bounds there is no lemma 3, and no
+  /// Lemma 1 of more than `max_pair_states` that is not asked for by name.
   std::vector<CertifiedClaim> verdicts() const;
 
  private:
@@ -74,6 +74,8 @@ class ExactClaims {
   Tightest& at(ClaimId id) { return rounds_[static_cast<std::size_t>(id)]; }
   Tightest& at_limit(ClaimId id) { return limit_[static_cast<std::size_t>(id)]; }
   CertifiedClaim verdict(ClaimId id) const;
+  /// Lemma 1, of too many states.
+  bool out_of_reach(ClaimId id) const;
   ScaledTable backup(const Values<Rational>& v) const { return scaled_.backup(ScaledValues(v)); }
   /// Lemma 2: |T*Q_n - Q_{n+1}| <= Delta. T*Q_n is never the smaller. `off`: how far Q_n may be from q.
   void lemma_2(Tightest& claim, long n, const ScaledTable& q, const ScaledTable& next, const Rational& off = 0);

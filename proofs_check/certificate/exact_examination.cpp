@@ -104,6 +104,7 @@ CertifyOptions certify_options(const ExaminationOptions& options) {
   exact.reading = options.reading;
   exact.tie = options.tie;
   exact.only = options.only;
+  if (options.by_bounds && exact.only) exact.only->erase(ClaimId::lemma_3);
   exact.max_rounds = std::min(options.max_iterations, exact.max_rounds);
   exact.max_period = options.max_period;
   exact.max_positions = options.max_belief_positions;

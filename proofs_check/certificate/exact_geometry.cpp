@@ -72,11 +72,13 @@ Rational ExactGeometry::upper(State s, State t) const {
   return attained ? root : Rational(root + Rational(1, Integer(1) << root_bits));
 }
 
-AssumptionFails no_lipschitz_constant(State s, State t, const char* what, Action action) {
-  return AssumptionFails(fmt::format(
+void refuse_infinite(const ModelConstants<Rational>& c) {
+  if (c.finite()) return;
+  const auto& bad = c.l_r.infinite ? c.l_r : c.l_p.infinite ? c.l_p : c.k_tv;
+  throw AssumptionFails(fmt::format(
       "Assumption 1: states {} and {} are at distance 0, but their {} for action {} differ, so no Lipschitz constant "
       "exists",
-      s, t, what, action));
+      bad.s1, bad.s2, c.l_r.infinite ? "rewards" : "transitions", bad.action));
 }
 
 LipschitzReach lipschitz_reach(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry,

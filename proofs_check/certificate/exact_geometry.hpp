@@ -39,8 +39,8 @@ class ExactGeometry {
   bool hops_ = false;  // paths that do not exist count as |S| hops in an exact metric
 };
 
-/// Assumption 1 fails: states at distance 0 differ in their "rewards" or "transitions".
-AssumptionFails no_lipschitz_constant(State s, State t, const char* what, Action action);
+/// Throws AssumptionFails where states at distance 0 differ, so that no constant exists.
+void refuse_infinite(const ModelConstants<Rational>& c);
 
 /// l_r d(s,t) and l_p d(s,t) for every pair of states, or a little less: the constant times the lower distance, or what
 /// the pair itself differs by if that is more, which it can only be where distances or constants `may_fall_short` of

@@ -8,8 +8,9 @@ namespace maximin {
 CertifiedClaim Tightest::verdict(ClaimId id, bool exact) const {
   CertifiedClaim claim;
   claim.id = id;
+  if (undecided_) return claim;
   const bool refuted = exact && decisive_ && decisive_->slack() < 0;
-  if (!refuted && (undecided_ || !tightest_ || tightest_->slack() < 0)) return claim;
+  if (!refuted && (!tightest_ || tightest_->slack() < 0)) return claim;
   const Instance& at = refuted ? *decisive_ : *tightest_;
   claim.verdict = refuted ? Verdict::violated : Verdict::holds;
   claim.left = at.left;

@@ -29,7 +29,8 @@ class Tightest {
     keep(tightest_, std::move(instance));
   }
 
-  /// Something that the claim speaks of was not decided.
+  /// Something that the claim speaks of was not decided: then nothing is said of it, even where it is violated
+  /// elsewhere.
   void undecided() { undecided_ = true; }
 
   /// Takes in what the other has seen.

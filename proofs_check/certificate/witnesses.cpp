@@ -25,9 +25,10 @@ Metric<double> near_metric(const ExactGeometry& geometry) {
   return Metric<double>::from_shortest_paths(std::move(distances));
 }
 
-FiniteMdp<double> near_model(const FiniteMdp<Rational>& mdp) {
+template <class Make>
+auto in_floating_point(Make make) {
   try {
-    return internal::rounded(mdp);
+    return make();
   } catch (const InputError&) {
     throw InputError(
         "model: numbers beyond floating point, which bounds start from; expected smaller ones or --arith exact");
@@ -39,25 +40,18 @@ template <class Difference>
 LipschitzConstant<Rational> exactly(const LipschitzConstant<double>& found, const ExactGeometry& geometry,
                                     Difference difference) {
   LipschitzConstant<Rational> c;
-  if (found.value > 0) {
+  if (found.value > 0 || found.infinite) {
     c.observe(difference(found), geometry.upper(found.s1, found.s2), found.s1, found.s2, found.action, found.target);
   }
   return c;
-}
-
-void refuse_infinite(const ModelConstants<double>& c) {
-  if (c.finite()) return;
-  const auto& bad = c.l_r.infinite ? c.l_r : c.l_p.infinite ? c.l_p : c.k_tv;
-  throw no_lipschitz_constant(bad.s1, bad.s2, c.l_r.infinite ? "rewards" : "transitions", bad.action);
 }
 
 }  // namespace
 
 Witnesses find_witnesses(const FiniteMdp<Rational>& mdp, const ExactGeometry& geometry, const ScaledTable& low,
                          const ScaledTable& high) {
-  const Metric<double> metric = near_metric(geometry);
-  const ModelConstants<double> near = model_constants(near_model(mdp), metric);
-  refuse_infinite(near);
+  const Metric<double> metric = in_floating_point([&] { return near_metric(geometry); });
+  const auto near = in_floating_point([&] { return model_constants(internal::rounded(mdp), metric); });
   Witnesses w;
   ModelConstants<Rational>& c = w.constants;
   c.l_r = exactly(near.l_r, geometry, [&](const auto& at) {
@@ -69,6 +63,7 @@ Witnesses find_witnesses(const FiniteMdp<Rational>& mdp, const ExactGeometry& ge
   c.l_p = exactly(near.l_p, geometry, [&](const auto& at) { return rows(at).largest; });
   if (c.l_p.value != 0) c.l_p.target = rows(near.l_p).at;
   c.k_tv = exactly(near.k_tv, geometry, [&](const auto& at) { return rows(at).total_variation; });
+  refuse_infinite(c);
   c.r_min = mdp.rewards().minCoeff();
   c.r_max_signed = mdp.rewards().maxCoeff();
   c.r_max = std::max(c.r_max_signed, Rational(-c.r_min));
@@ -79,7 +74,7 @@ Witnesses find_witnesses(const FiniteMdp<Rational>& mdp, const ExactGeometry& ge
     q.data()[i] = static_cast<double>(Rational(low.numerators.data()[i], low.denominator));
   }
   LipschitzConstant<double> star = lipschitz_constant(q, metric);
-  if (star.value > 0 && q(star.s1, star.action) < q(star.s2, star.action)) std::swap(star.s1, star.s2);
+  if (q(star.s1, star.action) < q(star.s2, star.action)) std::swap(star.s1, star.s2);
   w.l_star =
       exactly(star, geometry, [&](const auto& at) { return Rational(low(at.s1, at.action) - high(at.s2, at.action)); });
   return w;

@@ -94,6 +94,32 @@ TEST(CertifyByBounds, LeavesAFalseClaimOpen) {
   }
 }
 
+/// Distances and quotients that floating point takes for 0 and infinity are neither.
+TEST(CertifyByBounds, TakesNoConstantForInfiniteThatIsNot) {
+  FiniteMdpBuilder<Rational> b(2, 1, Rational(1, 2));
+  b.reward(0, 0, 1).transition(0, 0, 0, 1).transition(1, 0, 1, 1);
+  Model<Rational> model{std::move(b).build()};
+  model.geometry.kind = Geometry<Rational>::Kind::points;
+  model.geometry.points.resize(2, 1);
+  model.geometry.points << Rational(0), 1 / Rational(Integer(1) << 1400);
+  model.geometry.norm = Norm::l1;
+  model.geometry.eps = 1;
+  const BoundsCertificate c = certify_by_bounds(model);
+  EXPECT_EQ(c.constants.l_r.value, Rational(Integer(1) << 1400));
+  model.geometry.points(1, 0) = 0;
+  EXPECT_THROW(certify_by_bounds(model), AssumptionFails);
+}
+
+/// Lemma 1 looks at pairs of states: of many states nothing is said of it, unless it is asked for.
+TEST(CertifyByBounds, OfManyStatesLemma1IsLeftOut) {
+  CertifyOptions options{.max_positions = 500, .max_pair_states = 5};
+  const BoundsCertificate c = certify_by_bounds(rationalise(builtin_model("garnet")), {}, options);
+  EXPECT_FALSE(c.any(Verdict::undetermined));
+  EXPECT_EQ(c.claims.front().id, ClaimId::lemma_2);
+  options.only = std::set{ClaimId::lemma_1};
+  EXPECT_TRUE(certify_by_bounds(rationalise(builtin_model("garnet")), {}, options).any(Verdict::undetermined));
+}
+
 TEST(CertifyByBounds, IsAnExaminationWithoutLemma3) {
   const Examination e = examine_exactly(rationalise(builtin_model("garnet")), {}, {.exact = true, .by_bounds = true});
   EXPECT_EQ(e.check(ClaimId::lemma_3).verdict, Verdict::not_asked);

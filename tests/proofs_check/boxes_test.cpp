@@ -11,6 +11,7 @@
 #include <maximin/models/model_family.hpp>
 #include <maximin/models/rationalise.hpp>
 #include <maximin/proofs_check/certificate/boxes.hpp>
+#include <maximin/proofs_check/certificate/certificate.hpp>
 #include <maximin/tabular/optimal_attack.hpp>
 #include <maximin/tabular/policy_iteration.hpp>
 #include <maximin/theory/bellman.hpp>
@@ -25,12 +26,14 @@ struct Enclosed {
         balls(make_perturbation(model)),
         scaled(model.mdp),
         tie(wins),
-        boxes(model.mdp, balls, scaled, wins) {}
+        options{.tie = wins},
+        boxes(model.mdp, balls, scaled, options) {}
 
   Model<Rational> model;
   Perturbation<Rational> balls;
   ScaledMdp scaled;
   TieBreak tie;
+  CertifyOptions options;
   Boxes boxes;
 };
 

@@ -89,6 +89,42 @@ TEST(Certify, TooManyPositionsLeaveALowerBound) {
   EXPECT_FALSE(certify(example("garnet"), {}, options).belief_game) << "not even the starts";
 }
 
+Model<Rational> two_loops(const Rational& first, const Rational& second, Geometry<Rational>::Kind kind, int eps) {
+  FiniteMdpBuilder<Rational> b(2, 1, Rational(1, 2));
+  b.reward(0, 0, first).transition(0, 0, 0, 1).reward(1, 0, second).transition(1, 0, 1, 1);
+  Model<Rational> model{std::move(b).build()};
+  model.geometry.kind = kind;
+  model.geometry.eps = eps;
+  return model;
+}
+
+/// Whatever eps is: in exact arithmetic, no path was |S| hops.
+TEST(Certify, NoBallReachesWhereNoPathLeads) {
+  const auto model = two_loops(1, 2, Geometry<Rational>::Kind::hops, 5);
+  EXPECT_EQ(ExactGeometry(model).balls().largest_ball(), 1);
+  const Certificate c = certify(model);
+  EXPECT_FALSE(c.any(Verdict::violated));
+  EXPECT_FALSE(c.any(Verdict::undetermined));
+}
+
+TEST(Certify, ValuesBeyondFloatingPointAreNoTrouble) {
+  const Rational huge = decimal(1e308);
+  const Certificate c = certify(two_loops(huge, -huge, Geometry<Rational>::Kind::discrete, 1));
+  EXPECT_FALSE(c.any(Verdict::violated));
+  EXPECT_EQ(of(c, ClaimId::e_test_time).verdict, Verdict::holds);
+  EXPECT_EQ(of(c, ClaimId::f_belief).verdict, Verdict::holds);
+}
+
+/// The page has it so: what needs the limit is undetermined without it, even where a round refutes it.
+TEST(Certify, SaysNothingOfAClaimWhoseLimitIsUnknown) {
+  const Certificate c =
+      certify(two_loops(decimal(1e308) * 10, -decimal(1e308) * 10, Geometry<Rational>::Kind::discrete, 1), {},
+              {.reading = Reading::paper, .max_rounds = 1});
+  EXPECT_FALSE(c.limit);
+  EXPECT_FALSE(c.boxes) << "floating point cannot propose any";
+  EXPECT_EQ(of(c, ClaimId::lemma_1).verdict, Verdict::undetermined);
+}
+
 /// An absorbing state is in every ball and all its actions are one: the tie at every observation is for ever, and the
 /// index decides it.
 TEST(Certify, TiesForEverAreSettledByTheIndex) {
