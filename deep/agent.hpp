@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+
+#include <maximin/gridworld/gridworld.hpp>
+#include <maximin/theory/random.hpp>
+#include <maximin/theory/rollout_in_step.hpp>
+#include <maximin/theory/types.hpp>
+
+/// What the deep layer's agents and attacks have in common. No LibTorch here.
+namespace maximin::deep {
+
+/// An agent that acts in many episodes of the Gridworld at once and whose mind can be read. Models AgentInStep.
+class GridAgent {
+ public:
+  using ObservationType = Point;
+  using ActionType = Action;
+
+  GridAgent() = default;
+  virtual ~GridAgent() = default;
+  GridAgent(const GridAgent&) = delete;
+  GridAgent& operator=(const GridAgent&) = delete;
+
+  virtual void resize(Lane lanes) = 0;
+  virtual void forget(Lane lane) = 0;
+  virtual void act(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Stream> streams,
+                   std::span<Action> actions) = 0;
+
+  /// What the agent would do in these lanes if it were shown this now; nothing is remembered. A lane may occur many
+  /// times: that is how an adaptive attack looks for the observation to show.
+  virtual void would_do(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Action> actions) const = 0;
+};
+
+/// Whoever perturbs what an agent of the Gridworld sees. Models AttackInStep.
+class GridAttack {
+ public:
+  GridAttack() = default;
+  virtual ~GridAttack() = default;
+  GridAttack(const GridAttack&) = delete;
+  GridAttack& operator=(const GridAttack&) = delete;
+
+  virtual void resize(Lane) {}
+  virtual void forget(Lane) {}
+  virtual void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
+                       std::span<Stream> streams, std::span<Point> shown) = 0;
+};
+
+}  // namespace maximin::deep

@@ -1,0 +1,57 @@
+#include <maximin/deep/q_network.hpp>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace maximin::deep {
+namespace {
+
+void fill_uniform(torch::Tensor parameter, double bound, Stream& rng) {
+  float* values = parameter.data_ptr<float>();
+  for (long i = 0; i < parameter.numel(); ++i) values[i] = static_cast<float>(rng.uniform(-bound, bound));
+}
+
+}  // namespace
+
+QNetwork::QNetwork(QNetworkShape shape, Stream& rng) : shape_(std::move(shape)) {
+  torch::NoGradGuard no_grad;
+  long width = shape_.inputs;
+  const auto add = [&](long outputs) {
+    torch::nn::Linear layer(width, outputs);
+    const double bound = 1 / std::sqrt(static_cast<double>(width));
+    fill_uniform(layer->weight, bound, rng);
+    fill_uniform(layer->bias, bound, rng);
+    layers_.push_back(register_module("layer" + std::to_string(layers_.size()), layer));
+    width = outputs;
+  };
+  for (const long h : shape_.hidden) add(h);
+  add(shape_.actions);
+}
+
+torch::Tensor QNetwork::centred(const torch::Tensor& states) const {
+  return (states - shape_.input_centre) * shape_.input_scale;
+}
+
+torch::Tensor QNetwork::forward(const torch::Tensor& states) {
+  torch::Tensor x = centred(states);
+  for (std::size_t i = 0; i + 1 < layers_.size(); ++i) x = torch::relu(layers_[i]->forward(x));
+  return layers_.back()->forward(x);
+}
+
+void QNetwork::copy_from(const QNetwork& other) {
+  TORCH_CHECK(shape_ == other.shape_, "networks of different shapes");
+  torch::NoGradGuard no_grad;
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    layers_[i]->weight.copy_(other.layers_[i]->weight);
+    layers_[i]->bias.copy_(other.layers_[i]->bias);
+  }
+}
+
+long QNetwork::parameter_count() const {
+  long n = 0;
+  for (const auto& p : parameters()) n += p.numel();
+  return n;
+}
+
+}  // namespace maximin::deep

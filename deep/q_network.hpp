@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <torch/torch.h>
+
+#include <maximin/theory/random.hpp>
+
+namespace maximin::deep {
+
+/// The shape of a Q-network.
+struct QNetworkShape {
+  long inputs = 2;
+  std::vector<long> hidden{128, 128};
+  long actions = 8;
+  /// What is put before the first layer: (x - input_centre) * input_scale. The paper's networks take raw coordinates of
+  /// [0,10], centre 0 and scale 1; centred ones learn the same in a fraction of the frames.
+  double input_centre = 5, input_scale = 0.2;
+
+  friend bool operator==(const QNetworkShape&, const QNetworkShape&) = default;
+};
+
+/// Action values as a module: what an agent acts by and what an attack on them differentiates.
+class ActionValueModule : public torch::nn::Module {
+ public:
+  /// Q(s, .) of each row, [n, state...] -> [n, actions].
+  virtual torch::Tensor forward(const torch::Tensor& states) = 0;
+};
+
+/// Action values by a fully connected ReLU network: [n, inputs] -> [n, actions].
+class QNetwork : public ActionValueModule {
+ public:
+  /// Weights uniform in +-1/sqrt(fan-in), as LibTorch's own layers start, but drawn from the project's own stream: the
+  /// same seed is the same network with every version of LibTorch.
+  QNetwork(QNetworkShape shape, Stream& rng);
+
+  torch::Tensor forward(const torch::Tensor& states) override;
+
+  /// What stands before the first layer, an affine map like a layer's.
+  torch::Tensor centred(const torch::Tensor& states) const;
+
+  const QNetworkShape& shape() const { return shape_; }
+  /// The affine layers in order; ReLU between them, none after the last.
+  const std::vector<torch::nn::Linear>& layers() const { return layers_; }
+
+  /// Takes over all weights of another network of the same shape.
+  void copy_from(const QNetwork& other);
+
+  long parameter_count() const;
+
+ private:
+  QNetworkShape shape_;
+  std::vector<torch::nn::Linear> layers_;
+};
+
+using QNetworkPtr = std::shared_ptr<QNetwork>;
+
+}  // namespace maximin::deep
