@@ -16,7 +16,7 @@ void fill_uniform(torch::Tensor parameter, double bound, Stream& rng) {
 
 QNetwork::QNetwork(QNetworkShape shape, Stream& rng) : shape_(std::move(shape)) {
   torch::NoGradGuard no_grad;
-  long width = shape_.inputs;
+  long width = shape_.inputs * (1 + 2 * shape_.waves);
   const auto add = [&](long outputs) {
     torch::nn::Linear layer(width, outputs);
     const double bound = 1 / std::sqrt(static_cast<double>(width));
@@ -29,12 +29,20 @@ QNetwork::QNetwork(QNetworkShape shape, Stream& rng) : shape_(std::move(shape)) 
   add(shape_.actions);
 }
 
-torch::Tensor QNetwork::centred(const torch::Tensor& states) const {
-  return (states - shape_.input_centre) * shape_.input_scale;
+torch::Tensor QNetwork::features(const torch::Tensor& states) const {
+  const torch::Tensor scaled = (states - shape_.input_centre) * shape_.input_scale;
+  if (shape_.waves == 0) return scaled;
+  std::vector<torch::Tensor> parts{scaled};
+  double frequency = M_PI;
+  for (long w = 0; w < shape_.waves; ++w, frequency *= 2) {
+    parts.push_back(torch::sin(states * frequency));
+    parts.push_back(torch::cos(states * frequency));
+  }
+  return torch::cat(parts, 1);
 }
 
 torch::Tensor QNetwork::forward(const torch::Tensor& states) {
-  torch::Tensor x = centred(states);
+  torch::Tensor x = features(states);
   for (std::size_t i = 0; i + 1 < layers_.size(); ++i) x = torch::relu(layers_[i]->forward(x));
   return layers_.back()->forward(x);
 }

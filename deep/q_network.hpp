@@ -17,6 +17,9 @@ struct QNetworkShape {
   /// What is put before the first layer: (x - input_centre) * input_scale. The paper's networks take raw coordinates of
   /// [0,10], centre 0 and scale 1; centred ones learn the same in a fraction of the frames.
   double input_centre = 5, input_scale = 0.2;
+  /// Sines and cosines of each input that are put beside it, of periods 2, 1, 1/2, ...: walls lie at whole numbers, and a
+  /// network of straight pieces is slow to learn what repeats (Tancik et al. 2020). 0: none, the paper's networks.
+  long waves = 0;
 
   friend bool operator==(const QNetworkShape&, const QNetworkShape&) = default;
 };
@@ -37,8 +40,9 @@ class QNetwork : public ActionValueModule {
 
   torch::Tensor forward(const torch::Tensor& states) override;
 
-  /// What stands before the first layer, an affine map like a layer's.
-  torch::Tensor centred(const torch::Tensor& states) const;
+  /// What stands before the first layer: [n, inputs] -> [n, inputs * (1 + 2 waves)], in the order scaled inputs, then
+  /// for each wave the sines of all inputs and the cosines of all.
+  torch::Tensor features(const torch::Tensor& states) const;
 
   const QNetworkShape& shape() const { return shape_; }
   /// The affine layers in order; ReLU between them, none after the last.

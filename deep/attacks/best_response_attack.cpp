@@ -1,0 +1,60 @@
+#include <maximin/deep/attacks/best_response_attack.hpp>
+
+#include <utility>
+
+#include <maximin/deep/tensors.hpp>
+#include <maximin/theory/error.hpp>
+
+namespace maximin::deep {
+
+BestResponseAttack::BestResponseAttack(std::shared_ptr<ActionValueModule> judge, const ObservationBall& ball,
+                                       const BestResponseOptions& options)
+    : judge_(std::move(judge)), ball_(ball), options_(options) {
+  if (options.grid < 0 || options.random < 0 || options.grid == 1 || options.grid + options.random == 0) {
+    throw InputError("best response: no candidates, expected a grid of 2 or more points a side, or random ones");
+  }
+}
+
+void BestResponseAttack::candidates(Point truth, Stream& rng, std::vector<Point>& out) const {
+  const auto along = [&](double v, int i) {
+    return ball_.low(v) + (ball_.high(v) - ball_.low(v)) * i / (options_.grid - 1);
+  };
+  for (int i = 0; i < options_.grid; ++i) {
+    for (int j = 0; j < options_.grid; ++j) {
+      out.push_back(ball_.project(truth, {along(truth.x, i), along(truth.y, j)}));
+    }
+  }
+  for (int i = 0; i < options_.random; ++i) out.push_back(ball_.draw(truth, rng));
+}
+
+void BestResponseAttack::perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
+                                 std::span<Stream> streams, std::span<Point> shown) {
+  std::vector<Point> points;
+  std::vector<Lane> asked;
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    candidates(truths[k], streams[static_cast<std::size_t>(lanes[k])], points);
+    asked.resize(points.size(), lanes[k]);
+  }
+  std::vector<Action> answers(points.size());
+  agent.would_do(asked, points, answers);
+
+  torch::InferenceMode inference;
+  const torch::Device device = judge_->parameters().front().device();
+  const torch::Tensor q = judge_->forward(to_tensor(truths).to(device)).to(torch::kCPU);
+  const auto value = q.accessor<float, 2>();
+  const std::size_t each = points.size() / lanes.size();
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    Stream& rng = streams[static_cast<std::size_t>(lanes[k])];
+    std::size_t worst = k * each;
+    int equals = 1;
+    for (std::size_t c = k * each + 1; c < (k + 1) * each; ++c) {
+      const auto row = static_cast<long>(k);
+      const float here = value[row][answers[c]], least = value[row][answers[worst]];
+      equals = here < least ? 1 : here == least ? equals + 1 : equals;
+      if (here < least || (here == least && rng.below(equals) == 0)) worst = c;
+    }
+    shown[k] = points[worst];
+  }
+}
+
+}  // namespace maximin::deep

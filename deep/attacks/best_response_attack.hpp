@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <maximin/deep/agent.hpp>
+#include <maximin/deep/q_network.hpp>
+#include <maximin/gridworld/observation_ball.hpp>
+
+namespace maximin::deep {
+
+struct BestResponseOptions {
+  int grid = 3;     ///< candidates on a grid x grid over the ball, its corners among them; 0 for none
+  int random = 16;  ///< and as many drawn from the ball
+};
+
+/// Adaptive: asks the agent, belief and aggregator and all, what it would do on seeing each of many candidates, and
+/// shows the one whose answer is worst by the judge's action values, Q_judge(s, a) (paper, Algorithm 1 line 6, by
+/// sampling). Among equals, one drawn at random. It does not plan ahead to mislead the belief.
+class BestResponseAttack final : public GridAttack {
+ public:
+  BestResponseAttack(std::shared_ptr<ActionValueModule> judge, const ObservationBall& ball,
+                     const BestResponseOptions& options);
+  void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
+               std::span<Stream> streams, std::span<Point> shown) override;
+
+ private:
+  void candidates(Point truth, Stream& rng, std::vector<Point>& out) const;
+
+  std::shared_ptr<ActionValueModule> judge_;
+  ObservationBall ball_;
+  BestResponseOptions options_;
+};
+
+}  // namespace maximin::deep

@@ -1,0 +1,98 @@
+#include <maximin/deep/attacks/gradient_attack.hpp>
+
+#include <limits>
+#include <utility>
+
+#include <maximin/deep/tensors.hpp>
+
+namespace maximin::deep {
+namespace {
+
+/// Where the true states may be shown, per coordinate: [n, 2] each.
+struct Bounds {
+  torch::Tensor low, high;
+};
+
+Bounds bounds_of(std::span<const Point> truths, const ObservationBall& ball) {
+  std::vector<Point> low, high;
+  for (const Point& s : truths) {
+    low.push_back({ball.low(s.x), ball.low(s.y)});
+    high.push_back({ball.high(s.x), ball.high(s.y)});
+  }
+  return {to_tensor(low), to_tensor(high)};
+}
+
+}  // namespace
+
+GradientAttack::GradientAttack(std::shared_ptr<ActionValueModule> q, const ObservationBall& ball,
+                               const GradientAttackOptions& options)
+    : q_(std::move(q)), ball_(ball), options_(options) {}
+
+// What is differentiated.
+torch::Tensor GradientAttack::objective(const torch::Tensor& q_shown, const torch::Tensor& q_truth,
+                                        const torch::Tensor& best) const {
+  switch (options_.objective) {
+    case AttackObjective::value:
+      return (torch::softmax(q_shown, 1) * q_truth).sum(1);
+    case AttackObjective::min_best:
+      return torch::softmax(q_shown, 1).gather(1, best).squeeze(1);
+    case AttackObjective::cross_entropy:
+      break;
+  }
+  return torch::log_softmax(q_shown, 1).gather(1, best).squeeze(1);
+}
+
+// What visited points are compared by: the value objective by the action really provoked.
+torch::Tensor GradientAttack::hard_objective(const torch::Tensor& q_shown, const torch::Tensor& q_truth,
+                                             const torch::Tensor& best) const {
+  if (options_.objective != AttackObjective::value) return objective(q_shown, q_truth, best);
+  return q_truth.gather(1, q_shown.argmax(1, true)).squeeze(1);
+}
+
+torch::Tensor GradientAttack::starts(std::span<const Lane> lanes, std::span<const Point> truths,
+                                     std::span<Stream> streams) const {
+  std::vector<Point> drawn;
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    drawn.push_back(ball_.draw(truths[k], streams[static_cast<std::size_t>(lanes[k])]));
+  }
+  const torch::Tensor rows = to_tensor(drawn);
+  return options_.released_start ? rows.clamp(0, 1) : rows;
+}
+
+void GradientAttack::perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent&,
+                             std::span<Stream> streams, std::span<Point> shown) {
+  const torch::Device device = q_->parameters().front().device();
+  Bounds bounds = bounds_of(truths, ball_);
+  bounds = {bounds.low.to(device), bounds.high.to(device)};
+  torch::Tensor q_truth, best;
+  {
+    torch::NoGradGuard no_grad;
+    q_truth = q_->forward(to_tensor(truths).to(device));
+    best = q_truth.argmax(1, true);
+  }
+  const auto n = static_cast<long>(lanes.size());
+  torch::Tensor chosen = torch::zeros({n, 2}, device);
+  torch::Tensor least = torch::full({n}, std::numeric_limits<float>::infinity(), device);
+  const auto consider = [&](const torch::Tensor& at, const torch::Tensor& q_at) {
+    const torch::Tensor score = hard_objective(q_at, q_truth, best);
+    const torch::Tensor better = options_.keep_best ? score < least : torch::ones_like(score, torch::kBool);
+    chosen = torch::where(better.unsqueeze(1), at, chosen);
+    least = torch::where(better, score, least);
+  };
+  const double step = options_.step_share * ball_.eps();
+  for (int start = 0; start < options_.starts; ++start) {
+    torch::Tensor at = starts(lanes, truths, streams).to(device);
+    for (int i = 0; i <= options_.steps; ++i) {
+      at = torch::maximum(torch::minimum(at, bounds.high), bounds.low).detach().set_requires_grad(i < options_.steps);
+      const torch::Tensor q_at = q_->forward(at);
+      if (options_.keep_best || i == options_.steps) consider(at.detach(), q_at.detach());
+      if (i == options_.steps) break;
+      const torch::Tensor slope = torch::autograd::grad({objective(q_at, q_truth, best).sum()}, {at})[0];
+      at = at.detach() - step * slope.sign();
+    }
+  }
+  const std::vector<Point> points = to_points(chosen);
+  for (std::size_t k = 0; k < points.size(); ++k) shown[k] = ball_.project(truths[k], points[k]);
+}
+
+}  // namespace maximin::deep

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+
+#include <maximin/deep/agent.hpp>
+#include <maximin/deep/q_network.hpp>
+#include <maximin/gridworld/observation_ball.hpp>
+
+namespace maximin::deep {
+
+/// What a gradient attack makes small, as a function of the shown state t when s is true; Q is the network attacked.
+enum class AttackObjective {
+  value,  ///< the value of the action it provokes, Q(s, pi(t)), by way of sum_a softmax(Q(t))_a Q(s,a) (the paper's
+          ///< PGD)
+  cross_entropy,  ///< the log-probability of the greedy action of s, hard labels (PGD of the authors' released code)
+  min_best,       ///< the softmax probability of the best action of s (the paper's MinBest)
+};
+
+struct GradientAttackOptions {
+  AttackObjective objective = AttackObjective::value;
+  int steps = 10;
+  double step_share = 0.1;  ///< of eps, per step
+  int starts = 1;           ///< random starts; the best end is shown
+  /// Of all points visited show that with the least objective, rather than the last: never weaker by its own measure.
+  bool keep_best = true;
+  /// As in the authors' released Gridworld code: the random start is clamped to [0,1] instead of the world (a bug: it
+  /// starts at a wrong corner of the ball).
+  bool released_start = false;
+};
+
+/// Projected gradient descent on the sign of the gradient, from a random start in the ball, on a network, not on the
+/// agent: it does not know of beliefs and aggregators (every attack of the paper is of this kind).
+class GradientAttack final : public GridAttack {
+ public:
+  GradientAttack(std::shared_ptr<ActionValueModule> q, const ObservationBall& ball,
+                 const GradientAttackOptions& options);
+  void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
+               std::span<Stream> streams, std::span<Point> shown) override;
+
+ private:
+  torch::Tensor objective(const torch::Tensor& q_shown, const torch::Tensor& q_truth, const torch::Tensor& best) const;
+  torch::Tensor hard_objective(const torch::Tensor& q_shown, const torch::Tensor& q_truth,
+                               const torch::Tensor& best) const;
+  torch::Tensor starts(std::span<const Lane> lanes, std::span<const Point> truths, std::span<Stream> streams) const;
+
+  std::shared_ptr<ActionValueModule> q_;
+  ObservationBall ball_;
+  GradientAttackOptions options_;
+};
+
+}  // namespace maximin::deep

@@ -1,0 +1,32 @@
+#include <maximin/deep/losses/td_loss.hpp>
+
+namespace maximin::deep {
+
+torch::Tensor values_over(const BeliefStates& belief, ActionValueModule& q) {
+  const long b = belief.states.size(0), k = belief.states.size(1);
+  return q.forward(belief.states.flatten(0, 1)).view({b, k, -1});
+}
+
+torch::Tensor TdLoss::target_values(const Batch& batch, QNetwork& online, QNetwork& target) const {
+  torch::NoGradGuard no_grad;
+  const torch::Tensor& weights = batch.next_belief.weights;
+  const torch::Tensor q = values_over(batch.next_belief, target);
+  torch::Tensor next;
+  if (options_.order == TargetOrder::aggregate_of_max) {
+    next = aggregate(options_.aggregator, q.amax(2, true), weights).squeeze(1);
+  } else if (options_.double_q) {
+    const torch::Tensor chooser = aggregate(options_.aggregator, values_over(batch.next_belief, online), weights);
+    next = aggregate(options_.aggregator, q, weights).gather(1, chooser.argmax(1, true)).squeeze(1);
+  } else {
+    next = aggregate(options_.aggregator, q, weights).amax(1);
+  }
+  return batch.rewards + options_.discount * (1 - batch.terminal) * next;
+}
+
+LossValue TdLoss::operator()(const Batch& batch, QNetwork& online, QNetwork& target, const Progress&) {
+  const torch::Tensor y = target_values(batch, online, target);
+  const torch::Tensor q = online.forward(batch.states).gather(1, batch.actions.unsqueeze(1)).squeeze(1);
+  return {torch::huber_loss(q, y, torch::Reduction::None, options_.huber), (y - q).detach()};
+}
+
+}  // namespace maximin::deep

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <maximin/deep/aggregate.hpp>
+#include <maximin/deep/loss.hpp>
+
+namespace maximin::deep {
+
+/// In which order the target takes the best action and the worst state (paper versus released code, difference 1).
+enum class TargetOrder {
+  max_of_aggregate,  ///< max_a Aggregate_{m in M} Q'(m,a), the paper's maximin
+  aggregate_of_max,  ///< Aggregate_{m in M} max_a Q'(m,a), the released Gridworld code
+};
+
+struct TdLossOptions {
+  double discount = 0.99;
+  AnyAggregator aggregator = MinAggregator{};
+  bool double_q = false;  ///< the online network chooses the action, the target network values it
+  TargetOrder order = TargetOrder::max_of_aggregate;
+  double huber = 1;  ///< where the squared loss becomes linear
+};
+
+/// The Huber loss of Q(s_t, a_t) against y = R_t + gamma max_a Aggregate_{m in M_{t+1}} Q'(m, a), or R_t where the
+/// episode is over: BP-DQN (paper, Algorithm 4), and DQN where the belief is the next state itself.
+class TdLoss final : public Loss {
+ public:
+  explicit TdLoss(const TdLossOptions& options) : options_(options) {}
+  LossValue operator()(const Batch& batch, QNetwork& online, QNetwork& target, const Progress& progress) override;
+
+  /// y, [b], without gradient.
+  torch::Tensor target_values(const Batch& batch, QNetwork& online, QNetwork& target) const;
+
+ private:
+  TdLossOptions options_;
+};
+
+/// Values of every state of every belief, [b, K, actions].
+torch::Tensor values_over(const BeliefStates& belief, ActionValueModule& q);
+
+}  // namespace maximin::deep

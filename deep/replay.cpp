@@ -1,0 +1,161 @@
+#include <maximin/deep/replay.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <maximin/theory/error.hpp>
+
+namespace maximin::deep {
+
+Replay::Replay(const ReplayOptions& options, long belief_states) : options_(options) {
+  if (options.capacity < 1) throw InputError(fmt::format("replay: capacity {}, expected at least 1", options.capacity));
+  const long n = options.capacity;
+  states_ = torch::zeros({n, 2});
+  next_states_ = torch::zeros({n, 2});
+  actions_ = torch::zeros({n}, torch::kInt64);
+  rewards_ = torch::zeros({n});
+  terminal_ = torch::zeros({n});
+  beliefs_ = torch::zeros({n, belief_states, 2});
+  belief_weights_ = torch::zeros({n, belief_states});
+  if (options.prioritised) {
+    leaves_ = static_cast<long>(std::bit_ceil(static_cast<unsigned long>(n)));
+    tree_.assign(static_cast<std::size_t>(2 * leaves_), 0.0);
+  }
+}
+
+void Replay::set_priority(long index, double priority) {
+  auto node = static_cast<std::size_t>(leaves_ + index);
+  tree_[node] = priority;
+  while (node > 1) {
+    node /= 2;
+    tree_[node] = tree_[2 * node] + tree_[2 * node + 1];
+  }
+}
+
+long Replay::pick(double mass) const {
+  std::size_t node = 1;
+  while (node < static_cast<std::size_t>(leaves_)) {
+    node *= 2;
+    if (mass >= tree_[node] && tree_[node + 1] > 0) mass -= tree_[node++];
+  }
+  return static_cast<long>(node) - leaves_;
+}
+
+void Replay::add(const Transition& t, const BeliefStates& next_belief, long row) {
+  const long i = next_;
+  float* state = states_.data_ptr<float>() + 2 * i;
+  float* next = next_states_.data_ptr<float>() + 2 * i;
+  state[0] = static_cast<float>(t.state.x);
+  state[1] = static_cast<float>(t.state.y);
+  next[0] = static_cast<float>(t.next.x);
+  next[1] = static_cast<float>(t.next.y);
+  actions_.data_ptr<long>()[i] = t.action;
+  rewards_.data_ptr<float>()[i] = static_cast<float>(t.reward);
+  terminal_.data_ptr<float>()[i] = t.terminal ? 1.0F : 0.0F;
+  const long k = beliefs_.size(1);
+  float* belief = beliefs_.data_ptr<float>() + 2 * k * i;
+  float* weight = belief_weights_.data_ptr<float>() + k * i;
+  if (t.terminal) {
+    std::fill_n(belief, 2 * k, 0.0F);
+    std::fill_n(weight, k, 1.0F / static_cast<float>(k));
+  } else {
+    std::copy_n(next_belief.states.data_ptr<float>() + 2 * k * row, 2 * k, belief);
+    std::copy_n(next_belief.weights.data_ptr<float>() + k * row, k, weight);
+  }
+  if (options_.prioritised) set_priority(i, largest_);
+  next_ = (next_ + 1) % options_.capacity;
+  size_ = std::min(size_ + 1, options_.capacity);
+}
+
+Replay::Draw Replay::draw(long b, double progress, Stream& rng, torch::Device device) const {
+  Draw out;
+  out.importance = torch::ones({b});
+  float* importance = out.importance.data_ptr<float>();
+  const double beta = options_.beta_start + (1 - options_.beta_start) * std::clamp(progress, 0.0, 1.0);
+  for (long j = 0; j < b; ++j) {
+    if (!options_.prioritised) {
+      out.indices.push_back(rng.below(static_cast<int>(size_)));
+      continue;
+    }
+    out.indices.push_back(pick(rng.uniform() * tree_[1]));
+    const double p = tree_[static_cast<std::size_t>(leaves_ + out.indices.back())] / tree_[1];
+    importance[j] = static_cast<float>(std::pow(p * static_cast<double>(size_), -beta));
+  }
+  if (options_.prioritised) out.importance /= out.importance.max();
+  const torch::Tensor rows = torch::tensor(out.indices, torch::kInt64);
+  const auto take = [&](const torch::Tensor& t) { return t.index_select(0, rows).to(device); };
+  out.batch = {take(states_),   take(actions_),     take(rewards_),
+               take(terminal_), take(next_states_), {take(beliefs_), take(belief_weights_)}};
+  out.importance = out.importance.to(device);
+  return out;
+}
+
+void Replay::reprioritise(const std::vector<long>& indices, const torch::Tensor& td_error) {
+  if (!options_.prioritised) return;
+  const torch::Tensor errors = td_error.to(torch::kCPU, torch::kFloat).contiguous();
+  for (std::size_t j = 0; j < indices.size(); ++j) {
+    const double size = std::abs(static_cast<double>(errors.data_ptr<float>()[j])) + 1e-6;
+    const double priority = std::pow(size, options_.alpha);
+    largest_ = std::max(largest_, priority);
+    set_priority(indices[j], priority);
+  }
+}
+
+void Replay::save(torch::serialize::OutputArchive& archive) const {
+  archive.write("counters", torch::tensor({size_, next_}, torch::kInt64));
+  archive.write("largest", torch::tensor({largest_}, torch::kDouble));
+  const auto write = [&](const char* name, const torch::Tensor& t) {
+    archive.write(name, t.slice(0, 0, size_).clone());
+  };
+  write("states", states_);
+  write("actions", actions_);
+  write("rewards", rewards_);
+  write("terminal", terminal_);
+  write("next_states", next_states_);
+  write("beliefs", beliefs_);
+  write("belief_weights", belief_weights_);
+  if (!options_.prioritised) return;
+  const std::vector<double> leaves(tree_.begin() + leaves_, tree_.begin() + leaves_ + size_);
+  archive.write("priorities", torch::tensor(leaves, torch::kDouble));
+}
+
+void Replay::load(torch::serialize::InputArchive& archive) {
+  torch::Tensor counters, largest;
+  archive.read("counters", counters);
+  archive.read("largest", largest);
+  size_ = counters[0].item<long>();
+  next_ = counters[1].item<long>();
+  largest_ = largest[0].item<double>();
+  if (size_ < 0 || size_ > options_.capacity || next_ < 0 || next_ >= options_.capacity) {
+    throw InputError(fmt::format("replay: {} transitions, expected at most {}", size_, options_.capacity));
+  }
+  const auto read = [&](const char* name, torch::Tensor& into) {
+    torch::Tensor rows;
+    archive.read(name, rows);
+    if (rows.sizes().slice(1) != into.sizes().slice(1) || rows.size(0) != size_ || rows.dtype() != into.dtype()) {
+      throw InputError(fmt::format("replay: {} has another shape, expected one of the same training", name));
+    }
+    into.slice(0, 0, size_).copy_(rows);
+  };
+  read("states", states_);
+  read("actions", actions_);
+  read("rewards", rewards_);
+  read("terminal", terminal_);
+  read("next_states", next_states_);
+  read("beliefs", beliefs_);
+  read("belief_weights", belief_weights_);
+  if (!options_.prioritised) return;
+  torch::Tensor leaves;
+  archive.read("priorities", leaves);
+  if (leaves.numel() != size_) throw InputError("replay: priorities missing, expected one per transition");
+  std::fill(tree_.begin(), tree_.end(), 0.0);
+  for (long i = 0; i < size_; ++i) tree_[static_cast<std::size_t>(leaves_ + i)] = leaves[i].item<double>();
+  for (std::size_t node = static_cast<std::size_t>(leaves_) - 1; node >= 1; --node) {
+    tree_[node] = tree_[2 * node] + tree_[2 * node + 1];
+  }
+}
+
+}  // namespace maximin::deep

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <vector>
+
+#include <maximin/deep/loss.hpp>
+#include <maximin/gridworld/gridworld.hpp>
+#include <maximin/theory/random.hpp>
+#include <maximin/theory/types.hpp>
+
+namespace maximin::deep {
+
+/// How transitions are drawn from the replay memory.
+struct ReplayOptions {
+  long capacity = 200'000;
+  bool prioritised = false;  ///< proportional to |TD error|^alpha (Schaul et al. 2016), else uniform
+  double alpha = 0.5;
+  double beta_start = 0.4;  ///< importance correction, rising to 1 at the end of the training
+};
+
+/// A transition as it is stored.
+struct Transition {
+  Point state;
+  Action action = 0;
+  double reward = 0;
+  Point next;
+  bool terminal = false;
+};
+
+/// The last `capacity` transitions (s_t, a_t, R_t, s_{t+1}, M_{t+1}) of the Gridworld.
+class Replay {
+ public:
+  /// Beliefs of `belief_states` states each.
+  Replay(const ReplayOptions& options, long belief_states);
+
+  long size() const { return size_; }
+
+  /// Stores a transition with the belief of row `row`; the belief is not looked at where the episode is over.
+  void add(const Transition& transition, const BeliefStates& next_belief, long row);
+
+  /// What a draw came to: where the transitions stand, for `reprioritise`, and their importance weights, at most 1.
+  struct Draw {
+    Batch batch;
+    torch::Tensor importance;  ///< [b]
+    std::vector<long> indices;
+  };
+  /// b transitions with replacement. `progress` moves beta. The memory must not be empty.
+  Draw draw(long b, double progress, Stream& rng, torch::Device device) const;
+
+  /// Takes over |TD error| of drawn transitions as their priority. Does nothing when draws are uniform.
+  void reprioritise(const std::vector<long>& indices, const torch::Tensor& td_error);
+
+  /// Everything but the options, by name, for a checkpoint; and back. Throws InputError when it does not fit.
+  void save(torch::serialize::OutputArchive& archive) const;
+  void load(torch::serialize::InputArchive& archive);
+
+ private:
+  long pick(double mass) const;
+  void set_priority(long index, double priority);
+
+  ReplayOptions options_;
+  long size_ = 0, next_ = 0;
+  torch::Tensor states_, actions_, rewards_, terminal_, next_states_, beliefs_, belief_weights_;
+  long leaves_ = 0;
+  std::vector<double> tree_;  // sums of priorities; leaf i at leaves_ + i
+  double largest_ = 1;
+};
+
+}  // namespace maximin::deep

@@ -1,0 +1,274 @@
+#include <maximin/deep/trainer.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <maximin/theory/error.hpp>
+
+namespace maximin::deep {
+namespace {
+
+// Streams of one training: those of lane l in stretch n are number n * 2^20 + l, that of its draws from the replay
+// memory n * 2^20 + 2^19.
+Stream stream_of(std::uint64_t seed, long stretch, long which) {
+  return Stream(seed, static_cast<std::uint64_t>(stretch) << 20U | static_cast<std::uint64_t>(which));
+}
+constexpr long replay_stream = 1L << 19;
+
+void require(bool holds, const char* field, double value, const char* expected) {
+  if (!holds) throw InputError(fmt::format("training: {} is {}, expected {}", field, value, expected));
+}
+
+}  // namespace
+
+void TrainOptions::check() const {
+  require(frames >= 1, "frames", double(frames), "at least 1");
+  require(lanes >= 1 && lanes <= 4096, "lanes", lanes, "1 to 4096");
+  require(horizon >= 1, "horizon", double(horizon), "at least 1");
+  require(frames_per_update >= 1, "frames_per_update", double(frames_per_update), "at least 1");
+  require(batch >= 1, "batch", double(batch), "at least 1");
+  require(learning_rate > 0, "learning_rate", learning_rate, "a positive number");
+  require(final_learning_rate >= 0, "final_learning_rate", final_learning_rate, "0 or more");
+  require(explore_start >= 0 && explore_start <= 1, "explore_start", explore_start, "0 to 1");
+  require(explore_end >= 0 && explore_end <= 1, "explore_end", explore_end, "0 to 1");
+  require(target_every >= 1, "target_every", double(target_every), "at least 1");
+  require(reward_scale > 0, "reward_scale", reward_scale, "a positive number");
+  require(stretch_frames >= lanes, "stretch_frames", double(stretch_frames), "at least one per lane");
+}
+
+Trainer::Trainer(const TrainOptions& options, TrainingParts parts)
+    : options_(options), parts_(std::move(parts)), replay_(options.replay, parts_.belief->states_per_belief()) {
+  options_.check();
+  Stream unused(0);
+  parts_.online->to(parts_.device);
+  target_ = std::make_shared<QNetwork>(parts_.online->shape(), unused);
+  target_->to(parts_.device);
+  target_->copy_from(*parts_.online);
+  for (auto& p : target_->parameters()) p.set_requires_grad(false);
+  agent_ = std::make_unique<BeliefAgent>(parts_.loss->acting(parts_.online), parts_.belief, parts_.aggregator);
+  std::vector<torch::Tensor> trained = parts_.online->parameters();
+  for (const auto& module : parts_.loss->modules()) {
+    module->to(parts_.device);
+    for (auto& p : module->parameters()) {
+      if (p.requires_grad()) trained.push_back(p);
+    }
+  }
+  optimiser_ = std::make_unique<torch::optim::Adam>(
+      trained, torch::optim::AdamOptions(options_.learning_rate).eps(options_.adam_eps));
+  const auto n = static_cast<std::size_t>(options_.lanes);
+  for (Lane l = 0; l < options_.lanes; ++l) all_lanes_.push_back(l);
+  truths_.resize(n);
+  shown_.resize(n);
+  learner_states_.resize(n);
+  actions_.resize(n);
+  pending_.resize(n);
+  episodes_.resize(n);
+}
+
+double Trainer::exploration() const {
+  const double share = options_.explore_frames <= 0
+                           ? 1
+                           : std::min(1.0, static_cast<double>(frames_) / static_cast<double>(options_.explore_frames));
+  return options_.explore_start + share * (options_.explore_end - options_.explore_start);
+}
+
+void Trainer::begin_episode(std::size_t lane) {
+  truths_[lane] = parts_.world.reset(streams_[lane]);
+  agent_->forget(static_cast<Lane>(lane));
+  parts_.attack->forget(static_cast<Lane>(lane));
+  episodes_[lane] = {};
+  pending_[lane] = {};
+}
+
+void Trainer::begin_lanes() {
+  streams_.clear();
+  for (const Lane l : all_lanes_) streams_.push_back(stream_of(options_.seed, stretches_, l));
+  draws_ = stream_of(options_.seed, stretches_, replay_stream);
+  agent_->resize(options_.lanes);
+  parts_.attack->resize(options_.lanes);
+  for (std::size_t l = 0; l < all_lanes_.size(); ++l) begin_episode(l);
+}
+
+/// What the learner takes for the state: the truth, or the mean of what is believed.
+Point Trainer::learner_state(long row, Point truth) const {
+  if (!options_.learn_from_belief) return truth;
+  const BeliefStates& belief = agent_->acted_on();
+  const torch::Tensor mean = (belief.states[row] * belief.weights[row].unsqueeze(1)).sum(0);
+  return {mean[0].item<double>(), mean[1].item<double>()};
+}
+
+/// The attack shows, the agent believes and chooses, in these lanes.
+void Trainer::look(std::span<const Lane> lanes) {
+  std::vector<Point> truths, shown(lanes.size());
+  std::vector<Action> actions(lanes.size());
+  for (const Lane l : lanes) truths.push_back(truths_[static_cast<std::size_t>(l)]);
+  parts_.attack->perturb(lanes, truths, *agent_, streams_, shown);
+  agent_->act(lanes, shown, streams_, actions);
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    const auto l = static_cast<std::size_t>(lanes[k]);
+    shown_[l] = shown[k];
+    actions_[l] = actions[k];
+  }
+}
+
+/// Stores the transitions that waited for the belief now held, and begins episodes anew where one was cut.
+void Trainer::settle(std::span<const Lane> lanes) {
+  std::vector<Lane> anew;
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    const auto l = static_cast<std::size_t>(lanes[k]);
+    Pending& waiting = pending_[l];
+    learner_states_[l] = learner_state(static_cast<long>(k), truths_[l]);
+    if (waiting.waiting) {
+      waiting.transition.next = learner_states_[l];
+      replay_.add(waiting.transition, agent_->acted_on(), static_cast<long>(k));
+      waiting.waiting = false;
+    }
+    if (waiting.truncated) {
+      begin_episode(l);
+      anew.push_back(lanes[k]);
+    }
+  }
+  if (anew.empty()) return;
+  look(anew);
+  for (std::size_t k = 0; k < anew.size(); ++k) {
+    const auto l = static_cast<std::size_t>(anew[k]);
+    learner_states_[l] = learner_state(static_cast<long>(k), truths_[l]);
+  }
+}
+
+/// Every lane takes its action.
+void Trainer::move(CurvePoint& point) {
+  const BeliefStates before = agent_->acted_on();
+  for (std::size_t l = 0; l < all_lanes_.size(); ++l) {
+    const Outcome<Point> outcome = parts_.world.step(truths_[l], actions_[l]);
+    Episode& episode = episodes_[l];
+    episode.total_reward += outcome.reward;
+    ++episode.steps;
+    const bool cut = !outcome.terminal && episode.steps >= options_.horizon;
+    const bool over = outcome.terminal || (cut && options_.truncation_is_terminal);
+    pending_[l].transition = {learner_states_[l], actions_[l], outcome.reward * options_.reward_scale, outcome.next,
+                              over};
+    truths_[l] = outcome.next;
+    if (outcome.terminal || cut) {
+      ++point.episodes;
+      point.mean_return += episode.total_reward;
+    }
+    if (over) {
+      replay_.add(pending_[l].transition, before, 0);
+      begin_episode(l);
+    } else {
+      pending_[l].waiting = true;
+      pending_[l].truncated = cut;
+    }
+  }
+  frames_ += static_cast<long>(all_lanes_.size());
+}
+
+/// The updates that are due.
+void Trainer::learn(CurvePoint& point, long& updates) {
+  if (frames_ < options_.warm_up) return;
+  owed_ += static_cast<double>(all_lanes_.size()) / static_cast<double>(options_.frames_per_update);
+  const double fraction = static_cast<double>(frames_) / static_cast<double>(options_.frames);
+  const double rate =
+      options_.learning_rate + std::min(1.0, fraction) * (options_.final_learning_rate - options_.learning_rate);
+  static_cast<torch::optim::AdamOptions&>(optimiser_->param_groups()[0].options()).lr(rate);
+  for (; owed_ >= 1; owed_ -= 1) {
+    const Replay::Draw draw = replay_.draw(options_.batch, fraction, draws_, parts_.device);
+    const LossValue value = (*parts_.loss)(draw.batch, *parts_.online, *target_, {fraction});
+    const torch::Tensor loss = (value.loss * draw.importance).mean();
+    optimiser_->zero_grad();
+    loss.backward();
+    torch::nn::utils::clip_grad_norm_(optimiser_->param_groups()[0].params(), options_.gradient_clip);
+    optimiser_->step();
+    replay_.reprioritise(draw.indices, value.td_error);
+    point.loss += loss.item<double>();
+    ++updates;
+  }
+  if (frames_ - copied_at_ >= options_.target_every) {
+    target_->copy_from(*parts_.online);
+    parts_.loss->copy_targets();
+    copied_at_ = frames_;
+  }
+}
+
+CurvePoint Trainer::stretch() {
+  CurvePoint point;
+  long updates = 0, looks = 0, held = 0;
+  double area = 0;
+  begin_lanes();
+  const long ticks = std::max(1L, std::min(options_.stretch_frames, options_.frames - frames_) / options_.lanes);
+  for (long tick = 0; tick < ticks; ++tick) {
+    agent_->set_random_actions(exploration());
+    look(all_lanes_);
+    for (std::size_t l = 0; l < all_lanes_.size(); ++l) {
+      held += agent_->belief().holds(all_lanes_[l], truths_[l]);
+      area += agent_->belief().size(all_lanes_[l]);
+      ++looks;
+    }
+    settle(all_lanes_);
+    move(point);
+    learn(point, updates);
+  }
+  look(all_lanes_);
+  settle(all_lanes_);
+  ++stretches_;
+  updates_ += updates;
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  point.frames = frames_;
+  point.updates = updates_;
+  point.mean_return = point.episodes > 0 ? point.mean_return / static_cast<double>(point.episodes) : none;
+  point.loss = updates > 0 ? point.loss / static_cast<double>(updates) : none;
+  point.exploration = exploration();
+  point.believed = static_cast<double>(held) / static_cast<double>(looks);
+  point.belief_size = area / static_cast<double>(looks);
+  return point;
+}
+
+void Trainer::save(torch::serialize::OutputArchive& archive) const {
+  const auto nested = [&](const std::string& name, const auto& save_to) {
+    torch::serialize::OutputArchive inner;
+    save_to(inner);
+    archive.write(name, inner);
+  };
+  archive.write("counters", torch::tensor({frames_, updates_, stretches_, copied_at_}, torch::kInt64));
+  archive.write("owed", torch::tensor({owed_}, torch::kDouble));
+  nested("online", [&](auto& a) { parts_.online->save(a); });
+  nested("target", [&](auto& a) { target_->save(a); });
+  nested("optimiser", [&](auto& a) { optimiser_->save(a); });
+  nested("replay", [&](auto& a) { replay_.save(a); });
+  const auto modules = parts_.loss->modules();
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    nested("loss" + std::to_string(i), [&](auto& a) { modules[i]->save(a); });
+  }
+}
+
+void Trainer::load(torch::serialize::InputArchive& archive) {
+  const auto nested = [&](const std::string& name, const auto& load_from) {
+    torch::serialize::InputArchive inner;
+    archive.read(name, inner);
+    load_from(inner);
+  };
+  torch::Tensor counters, owed;
+  archive.read("counters", counters);
+  archive.read("owed", owed);
+  nested("online", [&](auto& a) { parts_.online->load(a); });
+  nested("target", [&](auto& a) { target_->load(a); });
+  nested("optimiser", [&](auto& a) { optimiser_->load(a); });
+  nested("replay", [&](auto& a) { replay_.load(a); });
+  const auto modules = parts_.loss->modules();
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    nested("loss" + std::to_string(i), [&](auto& a) { modules[i]->load(a); });
+  }
+  frames_ = counters[0].item<long>();
+  updates_ = counters[1].item<long>();
+  stretches_ = counters[2].item<long>();
+  copied_at_ = counters[3].item<long>();
+  owed_ = owed[0].item<double>();
+}
+
+}  // namespace maximin::deep
