@@ -1,0 +1,110 @@
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <maximin/deep/losses/sa_loss.hpp>
+#include <maximin/deep/losses/wocar_loss.hpp>
+#include <maximin/theory/error.hpp>
+
+namespace maximin::deep {
+namespace {
+
+void check_share(const char* name, double value) {
+  if (!(value >= 0 && value <= 1))
+    throw InputError(std::string("WocaR loss: ") + name + " " + std::to_string(value) + ", expected 0 to 1");
+}
+
+}  // namespace
+
+WocarLoss::WocarLoss(const WocarLossOptions& options, const QNetworkShape& shape, Stream& rng)
+    : options_(options),
+      critic_(std::make_shared<QNetwork>(shape, rng)),
+      critic_target_(std::make_shared<QNetwork>(shape, rng)) {
+  options_.td.check("WocaR loss");
+  options_.ramp.check("WocaR loss");
+  check_share("kappa", options_.kappa);
+  check_share("worst_share", options_.worst_share);
+  if (!(options_.hinge_margin >= 0))
+    throw InputError("WocaR loss: hinge_margin " + std::to_string(options_.hinge_margin) + ", expected at least 0");
+  if (options_.critic_eps && !(*options_.critic_eps >= 0 && std::isfinite(*options_.critic_eps)))
+    throw InputError("WocaR loss: critic_eps " + std::to_string(*options_.critic_eps) +
+                     ", expected finite and at least 0");
+  for (torch::Tensor& parameter : critic_target_->parameters()) parameter.set_requires_grad(false);
+  copy_targets();
+}
+
+void WocarLoss::start_from(const QNetwork& q) {
+  critic_->copy_from(q);
+  copy_targets();
+}
+
+torch::Tensor WocarLoss::reachable(const torch::Tensor& states, const QNetwork& online,
+                                   const Progress& progress) const {
+  torch::NoGradGuard no_grad;
+  const double eps = options_.critic_eps.value_or(options_.ramp.eps_at(progress));
+  const StateBox ball = ball_around(states, eps, options_.ramp.range);
+  const torch::Tensor leads = pairwise_difference_upper_bounds(online, ball, options_.reach_bounds);
+  if (!options_.reach_of_acting_values) return possibly_greedy(leads);
+  // A mean of bounds bounds the mean.
+  return possibly_greedy(mix(leads, pairwise_difference_upper_bounds(*critic_, ball, options_.reach_bounds)));
+}
+
+torch::Tensor WocarLoss::target_values(const Batch& batch, QNetwork& online, QNetwork& target) const {
+  torch::NoGradGuard no_grad;
+  const torch::Tensor& next = batch.next_states;
+  const torch::Tensor values = target.forward(next);
+  const torch::Tensor chooser = options_.td.double_q ? mix(online.forward(next), critic_->forward(next))
+                                                     : mix(values, critic_target_->forward(next));
+  return batch.rewards + options_.td.discount * (1 - batch.terminal) * of_actions(values, chooser.argmax(1));
+}
+
+torch::Tensor WocarLoss::critic_target_values(const Batch& batch, const QNetwork& online,
+                                              const Progress& progress) const {
+  torch::NoGradGuard no_grad;
+  const torch::Tensor reach = reachable(options_.reach_at_state ? batch.states : batch.next_states, online, progress);
+  const QNetworkPtr& valuer = options_.critic_target_network ? critic_target_ : critic_;
+  const torch::Tensor values = valuer->forward(batch.next_states);
+  const torch::Tensor worst =
+      values.masked_fill(torch::logical_not(reach), std::numeric_limits<double>::infinity()).amin(1);
+  return batch.rewards + options_.td.discount * (1 - batch.terminal) * worst;
+}
+
+torch::Tensor WocarLoss::robust_term(const Batch& batch, QNetwork& online, const torch::Tensor& values,
+                                     const torch::Tensor& y, const Progress& progress) const {
+  if (options_.robust_term == WocarRobustTerm::none) return torch::zeros_like(y);
+  if (options_.robust_term == WocarRobustTerm::important_hinge) {
+    const SaLossOptions hinge{options_.td, options_.ramp, 1, options_.hinge_margin, options_.robust_bounds};
+    torch::Tensor importance;
+    {
+      torch::NoGradGuard no_grad;
+      const torch::Tensor worst = critic_->forward(batch.states);
+      importance = worst.amax(1) - worst.amin(1);
+      importance = importance / importance.mean().clamp_min(std::numeric_limits<float>::min());
+    }
+    return importance * SaLoss(hinge).hinge(batch.states, online, progress);
+  }
+  const OutputBounds q = output_bounds(online, options_.ramp.ball(batch.states, progress), options_.robust_bounds);
+  const torch::Tensor taken = batch.actions.unsqueeze(1);
+  const torch::Tensor is_taken = torch::zeros_like(values, torch::kBool).scatter(1, taken, true);
+  const torch::Tensor anchor = torch::where(is_taken, y.unsqueeze(1), values);
+  const torch::Tensor errors = options_.robust_term == WocarRobustTerm::both_ends
+                                   ? torch::maximum((q.upper - anchor).abs(), (q.lower - anchor).abs())
+                                   : torch::where(is_taken, q.lower, q.upper) - anchor;
+  return huber(errors, options_.td.huber).sum(1);
+}
+
+LossValue WocarLoss::operator()(const Batch& batch, QNetwork& online, QNetwork& target, const Progress& progress) {
+  const torch::Tensor y = target_values(batch, online, target);
+  const torch::Tensor values = online.forward(batch.states);
+  const torch::Tensor error = y - of_actions(values, batch.actions);
+  const double share = options_.ramp_kappa ? options_.ramp.share(progress) : 1;
+  const double kappa = options_.robust_term == WocarRobustTerm::none ? 1 : 1 - share * (1 - options_.kappa);
+
+  const torch::Tensor worst_error =
+      critic_target_values(batch, online, progress) - of_actions(critic_->forward(batch.states), batch.actions);
+  torch::Tensor loss = kappa * huber(error, options_.td.huber) + huber(worst_error, options_.td.huber);
+  if (kappa < 1) loss = loss + (1 - kappa) * robust_term(batch, online, values, y, progress);
+  return {loss, error.detach()};
+}
+
+}  // namespace maximin::deep

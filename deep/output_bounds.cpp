@@ -1,0 +1,268 @@
+#include <maximin/deep/output_bounds.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <maximin/theory/error.hpp>
+
+namespace maximin::deep {
+namespace {
+
+using torch::Tensor;
+
+// Each layer adds as many roundings as its dot products have terms, and these: of biases, slopes, middles and radii.
+constexpr double kFurtherRoundings = 8;
+
+// Below this width the chord of an unstable ReLU is drawn as if the interval were that wide. It stays a bound, and its
+// derivative, which goes with one over the width, stays of use.
+constexpr double kLeastWidth = 1e-5;
+
+double machine_epsilon(const Tensor& t) {
+  return t.scalar_type() == torch::kDouble ? std::numeric_limits<double>::epsilon()
+                                           : static_cast<double>(std::numeric_limits<float>::epsilon());
+}
+
+struct Interval {
+  Tensor low, high;  // [n, width]
+
+  Tensor middle() const { return (low + high) / 2; }
+  Tensor radius() const { return (high - low) / 2; }
+  Interval relu() const { return {torch::relu(low), torch::relu(high)}; }
+  Interval meet(const Interval& other) const {
+    return {torch::maximum(low, other.low), torch::minimum(high, other.high)};
+  }
+};
+
+// k affine functions of a layer's activations, the same for all samples or other ones for each.
+struct AffineRows {
+  Tensor rows;    // [k, width] or [n, k, width]
+  Tensor offset;  // [k] or [n, k]
+  // What the rows are made of, in absolute values: the scale of rounding errors. No gradient.
+  Tensor row_magnitude, offset_magnitude;
+
+  static AffineRows of(const torch::nn::Linear& layer) {
+    return {layer->weight, layer->bias, layer->weight.detach().abs(), layer->bias.detach().abs()};
+  }
+
+  double terms() const { return static_cast<double>(rows.size(-1)) + kFurtherRoundings; }
+
+  // The functions, and after them their negatives: upper bounds of these are lower bounds of those.
+  AffineRows with_negatives() const {
+    const long axis = rows.dim() - 2;
+    return {torch::cat({rows, -rows}, axis), torch::cat({offset, -offset}, axis),
+            torch::cat({row_magnitude, row_magnitude}, axis), torch::cat({offset_magnitude, offset_magnitude}, axis)};
+  }
+};
+
+// rows x per sample: [n, k] from x [n, width].
+Tensor times(const Tensor& rows, const Tensor& x) {
+  return rows.dim() == 2 ? x.matmul(rows.t()) : rows.matmul(x.unsqueeze(2)).squeeze(2);
+}
+
+// Upper bounds of affine functions over boxes: rows middle + |rows| radius, exact but for rounding.
+Tensor interval_upper(const AffineRows& f, const Interval& x) {
+  const Tensor middle = x.middle(), radius = x.radius();
+  const Tensor bound = times(f.rows, middle) + f.offset + times(f.rows.abs(), radius);
+  torch::NoGradGuard no_grad;
+  const Tensor magnitude = times(f.row_magnitude, middle.abs() + radius) + f.offset_magnitude;
+  return bound + machine_epsilon(bound) * f.terms() * magnitude;
+}
+
+// relu(z) <= upper_slope z + intercept and relu(z) >= lower_slope z for z in an interval. [n, width] each.
+struct Relaxation {
+  Tensor upper_slope, intercept, lower_slope;
+  Tensor alive;  // 0 where relu is 0 on the whole interval
+
+  // The chord above; below, z or 0, whichever leaves the smaller area: CROWN's adaptive slope.
+  static Relaxation over(const Interval& z) {
+    const Tensor l = z.low.clamp_max(0), u = z.high.clamp_min(0);
+    const Tensor active = z.low >= 0, dead = z.high <= 0;
+    const Tensor chord = u / (u - l).clamp_min(kLeastWidth);
+    const Tensor slope = torch::where(active, torch::ones_like(chord), chord);
+    // Any slope will do if the intercept lifts the line above relu at both ends.
+    Tensor lift = torch::maximum(-slope * l, u - slope * u);
+    lift = lift + 4 * machine_epsilon(l) * (u - slope * l).detach();
+    const Tensor none = torch::zeros_like(lift);
+    const Tensor below = torch::logical_or(active, torch::logical_and(z.high > -z.low, torch::logical_not(dead)));
+    return {torch::where(dead, none, slope), torch::where(torch::logical_or(active, dead), none, lift),
+            below.to(lift.scalar_type()), torch::logical_not(dead).to(lift.scalar_type())};
+  }
+};
+
+// All that is known of the hidden layers of one network over the boxes of a batch.
+class HiddenBounds {
+ public:
+  HiddenBounds(const QNetwork& q, const StateBox& box, BoundMethod method);
+
+  // Upper bounds of affine functions of the last hidden layer's activations, [n, k].
+  Tensor upper(const AffineRows& f) const;
+
+ private:
+  bool linear_hidden() const { return method_ == BoundMethod::crown || method_ == BoundMethod::tightest; }
+  void add_layer(const torch::nn::Linear& layer);
+  Interval bounds(const AffineRows& f) const;
+  Tensor linear_upper(const AffineRows& f) const;
+
+  BoundMethod method_;
+  Interval input_;        // after what stands before the first layer
+  Interval activations_;  // of the last layer so far
+  Tensor magnitude_;      // of what is added up on the way to the last layer so far, [n, width]
+  double roundings_ = 0;  // on the way there
+  std::vector<torch::nn::Linear> layers_;
+  std::vector<Relaxation> relaxations_;
+};
+
+HiddenBounds::HiddenBounds(const QNetwork& q, const StateBox& box, BoundMethod method) : method_(method) {
+  // Rounding is monotone, so the ends of the box go through the very operations that its points go through.
+  const Tensor a = q.centred(box.low), b = q.centred(box.high);
+  input_ = {torch::minimum(a, b), torch::maximum(a, b)};
+  activations_ = input_;
+  magnitude_ = (input_.middle().abs() + input_.radius()).detach();
+  for (std::size_t i = 0; i + 1 < q.layers().size(); ++i) add_layer(q.layers()[i]);
+}
+
+void HiddenBounds::add_layer(const torch::nn::Linear& layer) {
+  const AffineRows f = AffineRows::of(layer);
+  const Interval z = bounds(f);
+  const Relaxation relaxation = Relaxation::over(z);
+  {
+    torch::NoGradGuard no_grad;
+    const Tensor before = times(f.row_magnitude, magnitude_) + f.offset_magnitude;
+    magnitude_ = relaxation.alive * before + relaxation.intercept;
+  }
+  roundings_ += f.terms();
+  layers_.push_back(layer);
+  relaxations_.push_back(relaxation);
+  activations_ = z.relu();
+}
+
+// What the next layer's sums are between.
+Interval HiddenBounds::bounds(const AffineRows& f) const {
+  const AffineRows both = f.with_negatives();
+  const long k = f.rows.size(-2);
+  const auto split = [k](const Tensor& upper) -> Interval { return {-upper.narrow(1, k, k), upper.narrow(1, 0, k)}; };
+  const Interval z = split(interval_upper(both, activations_));
+  // Of the first layer's sums the intervals are exact.
+  if (!linear_hidden() || layers_.empty()) return z;
+  return z.meet(split(linear_upper(both)));
+}
+
+Tensor HiddenBounds::upper(const AffineRows& f) const {
+  if (method_ == BoundMethod::ibp || layers_.empty()) return interval_upper(f, activations_);
+  const Tensor linear = linear_upper(f);
+  return method_ == BoundMethod::tightest ? torch::minimum(linear, interval_upper(f, activations_)) : linear;
+}
+
+// One layer down: what was `a` times the activations plus `d` becomes that in terms of the activations before.
+void step_down(const Relaxation& relu, const torch::nn::Linear& layer, Tensor& a, Tensor& d) {
+  const Tensor above = a.clamp_min(0), below = a.clamp_max(0);
+  const long k = a.size(1), width_before = layer->weight.size(1);
+  if (a.size(0) == 1 && width_before < k) {
+    // Rows shared by all samples and few inputs: scaling the weights instead of the rows is far less work.
+    const Tensor weights = torch::cat({layer->weight, layer->bias.unsqueeze(1)}, 1);
+    Tensor upper_weights = relu.upper_slope.unsqueeze(2) * weights;
+    const Tensor lift = torch::constant_pad_nd(relu.intercept.unsqueeze(2), {width_before, 0});
+    const Tensor both = above.matmul(upper_weights + lift) + below.matmul(relu.lower_slope.unsqueeze(2) * weights);
+    a = both.narrow(2, 0, width_before);
+    d = d + both.select(2, width_before);
+    return;
+  }
+  d = d + above.matmul(relu.intercept.unsqueeze(2)).squeeze(2);
+  a = above * relu.upper_slope.unsqueeze(1) + below * relu.lower_slope.unsqueeze(1);
+  d = d + a.matmul(layer->bias);
+  a = a.matmul(layer->weight);
+}
+
+Tensor HiddenBounds::linear_upper(const AffineRows& f) const {
+  Tensor a = f.rows.dim() == 2 ? f.rows.unsqueeze(0) : f.rows;  // [1 or n, k, width]
+  Tensor d = f.offset.dim() == 1 ? f.offset.unsqueeze(0) : f.offset;
+  for (std::size_t i = layers_.size(); i-- > 0;) step_down(relaxations_[i], layers_[i], a, d);
+  const Tensor bound = d + times(a, input_.middle()) + times(a.abs(), input_.radius());
+  torch::NoGradGuard no_grad;
+  const Tensor magnitude = times(f.row_magnitude, magnitude_) + f.offset_magnitude;
+  return bound + machine_epsilon(bound) * (roundings_ + f.terms()) * magnitude;
+}
+
+std::string shape_text(const Tensor& t) {
+  std::string text = "[";
+  for (const auto size : t.sizes()) text += (text.size() > 1 ? ", " : "") + std::to_string(size);
+  return text + "]";
+}
+
+void check(const QNetwork& q, const StateBox& box) {
+  const Tensor& weight = q.layers().front()->weight;
+  if (weight.scalar_type() != torch::kFloat && weight.scalar_type() != torch::kDouble)
+    throw InputError("output bounds: a network that is neither float nor double, expected one of these");
+  const long inputs = q.shape().inputs;
+  for (const Tensor& side : {box.low, box.high}) {
+    if (side.dim() != 2 || side.size(1) != inputs || side.size(0) != box.low.size(0))
+      throw InputError("output bounds: a box of shape " + shape_text(side) + ", expected [n, " +
+                       std::to_string(inputs) + "] on both sides");
+    if (side.scalar_type() != weight.scalar_type())
+      throw InputError("output bounds: a box in another precision than the network, expected the same");
+  }
+  if (!(box.low <= box.high).all().item<bool>())
+    throw InputError("output bounds: a box with low above high or not a number, expected low <= high");
+}
+
+// Rows of the last layer for a and minus those for b: [.., actions, width] from two of them that broadcast.
+AffineRows difference(const AffineRows& a, const AffineRows& b) {
+  return {a.rows - b.rows, a.offset - b.offset, a.row_magnitude + b.row_magnitude,
+          a.offset_magnitude + b.offset_magnitude};
+}
+
+}  // namespace
+
+StateBox ball_around(const Tensor& states, double eps, StateRange range) {
+  if (!(eps >= 0 && std::isfinite(eps)))
+    throw InputError("ball: eps " + std::to_string(eps) + ", expected finite and at least 0");
+  if (!(range.low <= range.high)) throw InputError("ball: an empty range of states, expected low <= high");
+  torch::NoGradGuard no_grad;
+  const Tensor centre = states.detach();
+  Tensor radius = torch::full_like(centre, eps);
+  if (eps > 0) radius += 4 * machine_epsilon(centre) * (centre.abs() + eps);
+  return {(centre - radius).clamp(range.low, range.high), (centre + radius).clamp(range.low, range.high)};
+}
+
+OutputBounds output_bounds(const QNetwork& q, const StateBox& box, BoundMethod method) {
+  check(q, box);
+  const Tensor upper = HiddenBounds(q, box, method).upper(AffineRows::of(q.layers().back()).with_negatives());
+  const long actions = q.shape().actions;
+  return {-upper.narrow(1, actions, actions), upper.narrow(1, 0, actions)};
+}
+
+Tensor difference_upper_bounds(const QNetwork& q, const StateBox& box, const Tensor& reference, BoundMethod method) {
+  check(q, box);
+  if (reference.dim() != 1 || reference.size(0) != box.low.size(0) || reference.scalar_type() != torch::kLong)
+    throw InputError("difference bounds: reference actions of shape " + shape_text(reference) +
+                     ", expected one int64 per box");
+  const AffineRows all = AffineRows::of(q.layers().back());
+  const auto chosen = [&reference](const Tensor& t) { return t.index_select(0, reference).unsqueeze(1); };
+  const AffineRows against{chosen(all.rows), chosen(all.offset), chosen(all.row_magnitude),
+                           chosen(all.offset_magnitude)};
+  const Tensor upper = HiddenBounds(q, box, method).upper(difference(all, against));
+  const Tensor itself = torch::zeros_like(upper, torch::kBool).scatter(1, reference.unsqueeze(1), true);
+  return upper.masked_fill(itself, 0);
+}
+
+Tensor pairwise_difference_upper_bounds(const QNetwork& q, const StateBox& box, BoundMethod method) {
+  check(q, box);
+  const AffineRows all = AffineRows::of(q.layers().back());
+  const auto first = [](const Tensor& t) { return t.unsqueeze(1); };
+  const AffineRows a{first(all.rows), first(all.offset), first(all.row_magnitude), first(all.offset_magnitude)};
+  AffineRows pairs = difference(a, all);
+  pairs = {pairs.rows.flatten(0, 1), pairs.offset.flatten(0, 1), pairs.row_magnitude.flatten(0, 1),
+           pairs.offset_magnitude.flatten(0, 1)};
+  const long actions = q.shape().actions;
+  const Tensor upper = HiddenBounds(q, box, method).upper(pairs).view({-1, actions, actions});
+  return upper.masked_fill(torch::eye(actions, upper.options()).to(torch::kBool), 0);
+}
+
+Tensor possibly_greedy(const Tensor& pairwise_upper_bounds) {
+  return (pairwise_upper_bounds >= 0).all(2);
+}
+
+}  // namespace maximin::deep
