@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include <maximin/deep/pf_rnn.hpp>
+#include <maximin/deep/wandering.hpp>
+
+namespace maximin::deep {
+
+/// Which true state a prediction is compared with: the one that will be acted on, or the one before it, as released.
+enum class PfTarget : std::uint8_t { acted_on, previous };
+
+/// How a PF-RNN is trained. `published()` is as the paper and its released code say.
+struct PfTrainingOptions {
+  Walk walk = Walk::mixed;
+  Deception deception = Deception::mixed;
+  int actions_drawn = 8;  ///< by random walks; the released code never draws the last one: 7
+  long horizon = 100;     ///< steps of a trajectory at most
+  /// How many different trajectories there are; 0: always new ones. The paper says 30, the released code takes 10,000.
+  long trajectories = 0;
+  PfTarget target = PfTarget::acted_on;
+
+  long updates = 5000;
+  long batch = 64;     ///< trajectories in step
+  long window = 10;    ///< steps that gradients go back; hidden states go on from window to window
+  long particles = 8;  ///< of each trajectory; 0: as many as the module has. A cell moves any number of them alike
+  double learning_rate = 1e-3;
+  bool decay = true;   ///< the learning rate falls to 0, linearly over the last half of the updates
+  double clip = 3;     ///< norm of the gradient at most
+  double dropout = 0;  ///< share of the embedded input and of what is read that is left out
+
+  double mean_weight = 1;  ///< of the squared distance between the weighted mean and the truth, in eps
+  double elbo_weight = 1;  ///< of -log (1/K) sum_i exp(-err_i^2 / 2)
+  /// err_i is the distance in units of kernel * eps, so that the particles are a sample that spreads as the truth may;
+  /// 0: exp(-err_i^2) in world units, as published, where a ball is so small that this is the mean of err_i^2 and the
+  /// particles fall together.
+  double kernel = 0.25;
+  double time_weight = 0;  ///< step t of a window counts exp(time_weight * t)
+
+  std::uint64_t seed = 1;
+
+  static PfTrainingOptions published();
+};
+
+/// Where the training stands.
+struct PfTrainingProgress {
+  long update = 0;  ///< 1 to options.updates
+  double loss = 0;
+  double mean_error = 0;   ///< mean distance from the weighted mean to the truth in this window, world units
+  double shown_error = 0;  ///< and from what is shown
+};
+
+/// Trains the module, whose device must be the CPU, and leaves it in evaluation mode. The same options are the same
+/// module. `progress` is called after every update; training ends early when it returns false. Throws InputError when
+/// an option is out of range, std::runtime_error when the loss is no longer finite.
+void train_pf_rnn(PfRnn& module, const PfTrainingOptions& options,
+                  const std::function<bool(const PfTrainingProgress&)>& progress = {});
+
+/// The loss of one step per lane, [n], given the true states [n, 2]: what train_pf_rnn makes small.
+torch::Tensor pf_loss(const PfStep& step, const torch::Tensor& truth, double eps, const PfTrainingOptions& options);
+
+}  // namespace maximin::deep
