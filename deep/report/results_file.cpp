@@ -1,0 +1,187 @@
+#include <maximin/deep/report/results_file.hpp>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <maximin/deep/report/json_fields.hpp>
+#include <maximin/theory/error.hpp>
+
+namespace maximin::deep {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// The first setting that differs, in words.
+std::string first_other_setting(const Json& old_one, const Json& new_one) {
+  if (!old_one.is_object() || !new_one.is_object()) return "other settings";
+  for (const auto& [key, value] : new_one.items()) {
+    if (!old_one.contains(key)) return fmt::format("no {}", key);
+    if (old_one[key] == value) continue;
+    if (value.is_object() && old_one[key].is_object()) return first_other_setting(old_one[key], value);
+    return fmt::format("{} is {} there and {} now", key, old_one[key].dump(), value.dump());
+  }
+  return "more settings there";
+}
+
+void expect_same_configuration(const Json& old_one, const Json& new_one, std::string_view where) {
+  if (old_one == new_one) return;
+  throw InputError(fmt::format("{}: another table ({}), expected the same configuration as now", where,
+                               first_other_setting(old_one, new_one)));
+}
+
+ResultBlock& block_of(ResultTable& table, std::string_view name) {
+  if (ResultBlock* found = table.find(name)) return *found;
+  table.blocks.push_back({std::string(name), "", {}});
+  return table.blocks.back();
+}
+
+ResultCell& cell_of(ResultBlock& block, const ResultCell& like) {
+  if (ResultCell* found = block.find(like.agent, like.attack, like.eps)) return *found;
+  block.cells.push_back(like);
+  block.cells.back().runs.clear();
+  return block.cells.back();
+}
+
+const SeedRun* run_of(const ResultCell& cell, std::uint64_t training_seed) {
+  for (const SeedRun& r : cell.runs) {
+    if (r.training_seed == training_seed) return &r;
+  }
+  return nullptr;
+}
+
+/// Adds the runs of `from` that `to` does not have. Returns their wall time.
+double take_runs(ResultCell& to, const ResultCell& from, std::string_view where) {
+  double seconds = 0;
+  for (const SeedRun& r : from.runs) {
+    const SeedRun* known = run_of(to, r.training_seed);
+    if (known && (known->returns != r.returns || known->evaluation_seed != r.evaluation_seed)) {
+      throw InputError(fmt::format("{}: {} / {} eps {}: training seed {} has other returns, expected the same run",
+                                   where, to.agent, to.attack, to.eps, r.training_seed));
+    }
+    if (known) continue;
+    to.runs.push_back(r);
+    seconds += r.wall_seconds;
+  }
+  if (to.note.empty()) to.note = from.note;
+  if (to.measures.empty()) to.measures = from.measures;
+  return seconds;
+}
+
+[[noreturn]] void refuse_writing(const fs::path& path, int reason) {
+  throw InputError(fmt::format("{}: {}, expected a file that can be written", path.string(), std::strerror(reason)));
+}
+
+}  // namespace
+
+ResultTable read_results(const fs::path& path) {
+  return results_from_json(read_json_file(path, "a table of results"), path.string());
+}
+
+void write_whole_file(const fs::path& path, std::string_view text) {
+  // Beside the file, for a file is renamed as a whole only within a file system.
+  const fs::path part = fmt::format("{}.{}.part", path.string(), ::getpid());
+  std::FILE* file = std::fopen(part.c_str(), "wb");
+  if (!file) refuse_writing(path, errno);
+  bool good = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0 &&
+              ::fsync(::fileno(file)) == 0;
+  int reason = errno;
+  good = std::fclose(file) == 0 && good;
+  if (good && std::rename(part.c_str(), path.c_str()) != 0) {
+    good = false;
+    reason = errno;
+  }
+  if (good) return;
+  std::remove(part.c_str());
+  refuse_writing(path, reason);
+}
+
+void write_results(const fs::path& path, const ResultTable& table) {
+  write_whole_file(path, readable_json(to_json(table)));
+}
+
+/// A file beside the table, held as long as one writes: the table itself is replaced at each writing.
+struct ResultFile::Lock {
+  explicit Lock(const fs::path& table) : path(table.string() + ".lock") {
+    for (;;) {
+      descriptor = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+      if (descriptor < 0) refuse_writing(path, errno);
+      if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+        ::close(descriptor);
+        throw InputError(fmt::format("{}: another run is writing it, expected one run at a time", table.string()));
+      }
+      struct stat held {
+      }, named{};
+      const bool same = ::fstat(descriptor, &held) == 0 && ::stat(path.c_str(), &named) == 0 &&
+                        held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+      if (same) return;
+      ::close(descriptor);  // its last holder removed it in between
+    }
+  }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+  ~Lock() {
+    ::unlink(path.c_str());
+    ::close(descriptor);
+  }
+
+  std::string path;
+  int descriptor = -1;
+};
+
+ResultFile::ResultFile(fs::path path, ResultTable table, std::unique_ptr<Lock> lock)
+    : path_(std::move(path)), table_(std::move(table)), lock_(std::move(lock)) {}
+ResultFile::ResultFile(ResultFile&&) noexcept = default;
+ResultFile& ResultFile::operator=(ResultFile&&) noexcept = default;
+ResultFile::~ResultFile() = default;
+
+ResultFile ResultFile::open(const fs::path& path, ResultTable plan) {
+  validate(plan);
+  auto lock = std::make_unique<Lock>(path);
+  if (fs::exists(path)) {
+    const ResultTable old_table = read_results(path);
+    const double seconds = plan.wall_seconds + old_table.wall_seconds;
+    merge(plan, old_table, path.string());
+    plan.wall_seconds = seconds;
+  }
+  write_results(path, plan);
+  return ResultFile(path, std::move(plan), std::move(lock));
+}
+
+bool ResultFile::has(std::string_view block, const ResultCell& cell, std::uint64_t training_seed) const {
+  const ResultBlock* b = table_.find(block);
+  const ResultCell* c = b ? b->find(cell.agent, cell.attack, cell.eps) : nullptr;
+  return c && run_of(*c, training_seed);
+}
+
+void ResultFile::put(std::string_view block, const ResultCell& cell, const SeedRun& run) {
+  ResultTable next = table_;
+  ResultCell& to = cell_of(block_of(next, block), cell);
+  to.runs.push_back(run);
+  if (!cell.note.empty()) to.note = cell.note;
+  if (!cell.measures.empty()) to.measures = cell.measures;
+  next.wall_seconds += run.wall_seconds;
+  write_results(path_, next);  // validates; the old table stays where it throws
+  table_ = std::move(next);
+}
+
+void merge(ResultTable& table, const ResultTable& other, std::string_view where) {
+  expect_same_configuration(other.configuration, table.configuration, where);
+  ResultTable merged = table;
+  for (const ResultBlock& b : other.blocks) {
+    ResultBlock& block = block_of(merged, b.name);
+    for (const ResultCell& c : b.cells) merged.wall_seconds += take_runs(cell_of(block, c), c, where);
+  }
+  table = std::move(merged);
+}
+
+}  // namespace maximin::deep
