@@ -15,7 +15,7 @@ foreach(floor IN LISTS floors)
 
   get_property(links GLOBAL PROPERTY MAXIMIN_LINK_${floor})
   set(lower_floors "")
-  set(packages "")
+  get_property(packages GLOBAL PROPERTY MAXIMIN_PACKAGES_${floor})
   foreach(link IN LISTS links)
     if(link MATCHES "^maximin::(.+)$")
       list(APPEND lower_floors ${CMAKE_MATCH_1})

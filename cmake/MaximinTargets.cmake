@@ -33,11 +33,13 @@ macro(maximin_package name version)
   set_property(GLOBAL PROPERTY MAXIMIN_PACKAGE_${name} "${version}")
 endmacro()
 
-# maximin_floor(NAME [SOURCES file...] [LINK target...]): the library maximin::NAME of the folder NAME.
+# maximin_floor(NAME [FOLDER folder] [SOURCES file...] [LINK target...] [PACKAGES package...]): the library maximin::NAME
+# of the folder NAME, or of one further down whose headers are reached through the folder above it. PACKAGES names what
+# it needs that LINK does not tell.
 # Without sources it is header-only. What it links is public; PACKAGE::target in LINK makes PACKAGE a dependency of the
 # installed floor, maximin::FLOOR makes that floor one.
 function(maximin_floor name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER" "SOURCES;LINK;PACKAGES")
   set(target maximin_${name})
   if(arg_SOURCES)
     add_library(${target} STATIC ${arg_SOURCES})
@@ -54,7 +56,12 @@ function(maximin_floor name)
   target_compile_options(${target} ${scope} $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off>)
   target_include_directories(${target} ${scope}
     $<BUILD_INTERFACE:${MAXIMIN_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${MAXIMIN_INCLUDE_DIR}/maximin/${name} SYMBOLIC)
+  if(NOT arg_FOLDER)
+    set(arg_FOLDER ${name})
+    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${MAXIMIN_INCLUDE_DIR}/maximin/${name} SYMBOLIC)
+  endif()
+  set_property(GLOBAL PROPERTY MAXIMIN_FOLDER_${name} ${arg_FOLDER})
+  set_property(GLOBAL PROPERTY MAXIMIN_PACKAGES_${name} "${arg_PACKAGES}")
   set_property(GLOBAL APPEND PROPERTY MAXIMIN_FLOORS ${name})
   set_property(GLOBAL PROPERTY MAXIMIN_LINK_${name} "${arg_LINK}")
 endfunction()

@@ -93,6 +93,32 @@ struct Relaxation {
 };
 
 // All that is known of the hidden layers of one network over the boxes of a batch.
+// What stands before the first layer, over a box. Rounding is monotone, so the ends of the box go through the very
+// operations that its points go through; sines and cosines are 1 or -1 where the interval passes a crest or a trough,
+// else what they are at its ends, widened by the rounding of the angle and of the function.
+Interval feature_interval(const QNetwork& q, const StateBox& box) {
+  const Tensor a = q.features(box.low), b = q.features(box.high);
+  const long inputs = q.shape().inputs;
+  Interval out{torch::minimum(a, b), torch::maximum(a, b)};
+  double frequency = M_PI;
+  for (long w = 0; w < q.shape().waves; ++w, frequency *= 2) {
+    const Tensor low = box.low * frequency, high = box.high * frequency;
+    const Tensor slack = machine_epsilon(low) * (4 + 2 * torch::maximum(low.abs(), high.abs()));
+    // sin has its crests at pi/2 + 2 pi k, cos at 2 pi k; troughs lie half a turn on.
+    const auto passes = [&](double phase) {
+      return torch::floor((high + slack - phase) / (2 * M_PI)) >= torch::ceil((low - slack - phase) / (2 * M_PI));
+    };
+    for (const int cosine : {0, 1}) {
+      const long column = inputs * (1 + 2 * w + cosine);
+      const double crest = cosine != 0 ? 0 : M_PI / 2;
+      Tensor least = out.low.narrow(1, column, inputs), most = out.high.narrow(1, column, inputs);
+      most.copy_(torch::where(passes(crest), torch::ones_like(most), (most + slack).clamp_max(1)));
+      least.copy_(torch::where(passes(crest + M_PI), -torch::ones_like(least), (least - slack).clamp_min(-1)));
+    }
+  }
+  return out;
+}
+
 class HiddenBounds {
  public:
   HiddenBounds(const QNetwork& q, const StateBox& box, BoundMethod method);
@@ -116,9 +142,7 @@ class HiddenBounds {
 };
 
 HiddenBounds::HiddenBounds(const QNetwork& q, const StateBox& box, BoundMethod method) : method_(method) {
-  // Rounding is monotone, so the ends of the box go through the very operations that its points go through.
-  const Tensor a = q.centred(box.low), b = q.centred(box.high);
-  input_ = {torch::minimum(a, b), torch::maximum(a, b)};
+  input_ = feature_interval(q, box);
   activations_ = input_;
   magnitude_ = (input_.middle().abs() + input_.radius()).detach();
   for (std::size_t i = 0; i + 1 < q.layers().size(); ++i) add_layer(q.layers()[i]);

@@ -17,8 +17,8 @@ struct QNetworkShape {
   /// What is put before the first layer: (x - input_centre) * input_scale. The paper's networks take raw coordinates of
   /// [0,10], centre 0 and scale 1; centred ones learn the same in a fraction of the frames.
   double input_centre = 5, input_scale = 0.2;
-  /// Sines and cosines of each input that are put beside it, of periods 2, 1, 1/2, ...: walls lie at whole numbers, and a
-  /// network of straight pieces is slow to learn what repeats (Tancik et al. 2020). 0: none, the paper's networks.
+  /// Sines and cosines of each input that are put beside it, of periods 2, 1, 1/2, ...: walls lie at whole numbers, and
+  /// a network of straight pieces is slow to learn what repeats (Tancik et al. 2020). 0: none, the paper's networks.
   long waves = 0;
 
   friend bool operator==(const QNetworkShape&, const QNetworkShape&) = default;

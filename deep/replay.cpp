@@ -1,8 +1,10 @@
 #include <maximin/deep/replay.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -104,55 +106,49 @@ void Replay::reprioritise(const std::vector<long>& indices, const torch::Tensor&
   }
 }
 
-void Replay::save(torch::serialize::OutputArchive& archive) const {
-  archive.write("counters", torch::tensor({size_, next_}, torch::kInt64));
-  archive.write("largest", torch::tensor({largest_}, torch::kDouble));
-  const auto write = [&](const char* name, const torch::Tensor& t) {
-    archive.write(name, t.slice(0, 0, size_).clone());
-  };
-  write("states", states_);
-  write("actions", actions_);
-  write("rewards", rewards_);
-  write("terminal", terminal_);
-  write("next_states", next_states_);
-  write("beliefs", beliefs_);
-  write("belief_weights", belief_weights_);
-  if (!options_.prioritised) return;
-  const std::vector<double> leaves(tree_.begin() + leaves_, tree_.begin() + leaves_ + size_);
-  archive.write("priorities", torch::tensor(leaves, torch::kDouble));
+namespace {
+
+constexpr const char* row_names[] = {"states",      "actions", "rewards",       "terminal",
+                                     "next_states", "beliefs", "belief_weights"};
+
+}  // namespace
+
+std::array<torch::Tensor, 7> Replay::rows() const {
+  return {states_, actions_, rewards_, terminal_, next_states_, beliefs_, belief_weights_};
 }
 
-void Replay::load(torch::serialize::InputArchive& archive) {
-  torch::Tensor counters, largest;
-  archive.read("counters", counters);
-  archive.read("largest", largest);
-  size_ = counters[0].item<long>();
-  next_ = counters[1].item<long>();
-  largest_ = largest[0].item<double>();
-  if (size_ < 0 || size_ > options_.capacity || next_ < 0 || next_ >= options_.capacity) {
-    throw InputError(fmt::format("replay: {} transitions, expected at most {}", size_, options_.capacity));
+void Replay::save(TensorFile& file) const {
+  file.tensors["replay.counters"] = torch::tensor({size_, next_}, torch::kInt64);
+  file.tensors["replay.largest"] = torch::tensor({largest_}, torch::kDouble);
+  const auto all = rows();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    file.tensors[std::string("replay.") + row_names[i]] = all[i].slice(0, 0, size_);
   }
-  const auto read = [&](const char* name, torch::Tensor& into) {
-    torch::Tensor rows;
-    archive.read(name, rows);
-    if (rows.sizes().slice(1) != into.sizes().slice(1) || rows.size(0) != size_ || rows.dtype() != into.dtype()) {
-      throw InputError(fmt::format("replay: {} has another shape, expected one of the same training", name));
-    }
-    into.slice(0, 0, size_).copy_(rows);
-  };
-  read("states", states_);
-  read("actions", actions_);
-  read("rewards", rewards_);
-  read("terminal", terminal_);
-  read("next_states", next_states_);
-  read("beliefs", beliefs_);
-  read("belief_weights", belief_weights_);
   if (!options_.prioritised) return;
-  torch::Tensor leaves;
-  archive.read("priorities", leaves);
-  if (leaves.numel() != size_) throw InputError("replay: priorities missing, expected one per transition");
+  const std::vector<double> leaves(tree_.begin() + leaves_, tree_.begin() + leaves_ + size_);
+  file.tensors["replay.priorities"] = torch::tensor(leaves, torch::kDouble);
+}
+
+void Replay::load(const TensorFile& file) {
+  torch::Tensor counters = torch::zeros({2}, torch::kInt64), largest = torch::zeros({1}, torch::kDouble);
+  file.copy_to("replay.counters", counters);
+  file.copy_to("replay.largest", largest);
+  const long size = counters[0].item<long>(), next = counters[1].item<long>();
+  if (size < 0 || size > options_.capacity || next < 0 || next >= options_.capacity) {
+    throw InputError(fmt::format("replay memory of {} transitions, expected at most {}", size, options_.capacity));
+  }
+  const auto all = rows();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    file.copy_to(std::string("replay.") + row_names[i], all[i].slice(0, 0, size));
+  }
+  size_ = size;
+  next_ = next;
+  largest_ = largest[0].item<double>();
+  if (!options_.prioritised) return;
+  torch::Tensor leaves = torch::zeros({size_}, torch::kDouble);
+  file.copy_to("replay.priorities", leaves);
   std::fill(tree_.begin(), tree_.end(), 0.0);
-  for (long i = 0; i < size_; ++i) tree_[static_cast<std::size_t>(leaves_ + i)] = leaves[i].item<double>();
+  std::copy_n(leaves.data_ptr<double>(), size_, tree_.begin() + leaves_);
   for (std::size_t node = static_cast<std::size_t>(leaves_) - 1; node >= 1; --node) {
     tree_[node] = tree_[2 * node] + tree_[2 * node + 1];
   }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <maximin/deep/loss.hpp>
+#include <maximin/deep/tensor_file.hpp>
 #include <maximin/gridworld/gridworld.hpp>
 #include <maximin/theory/random.hpp>
 #include <maximin/theory/types.hpp>
@@ -49,11 +51,13 @@ class Replay {
   /// Takes over |TD error| of drawn transitions as their priority. Does nothing when draws are uniform.
   void reprioritise(const std::vector<long>& indices, const torch::Tensor& td_error);
 
-  /// Everything but the options, by name, for a checkpoint; and back. Throws InputError when it does not fit.
-  void save(torch::serialize::OutputArchive& archive) const;
-  void load(torch::serialize::InputArchive& archive);
+  /// Everything but the options, as tensors replay.NAME, for a checkpoint; and back. Throws InputError when it does not
+  /// fit.
+  void save(TensorFile& file) const;
+  void load(const TensorFile& file);
 
  private:
+  std::array<torch::Tensor, 7> rows() const;
   long pick(double mass) const;
   void set_priority(long index, double priority);
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -229,40 +231,38 @@ CurvePoint Trainer::stretch() {
   return point;
 }
 
-void Trainer::save(torch::serialize::OutputArchive& archive) const {
-  const auto nested = [&](const std::string& name, const auto& save_to) {
-    torch::serialize::OutputArchive inner;
-    save_to(inner);
-    archive.write(name, inner);
-  };
-  archive.write("counters", torch::tensor({frames_, updates_, stretches_, copied_at_}, torch::kInt64));
-  archive.write("owed", torch::tensor({owed_}, torch::kDouble));
-  nested("online", [&](auto& a) { parts_.online->save(a); });
-  nested("target", [&](auto& a) { target_->save(a); });
-  nested("optimiser", [&](auto& a) { optimiser_->save(a); });
-  nested("replay", [&](auto& a) { replay_.save(a); });
+void Trainer::save(TensorFile& file) const {
+  file.tensors["counters"] = torch::tensor({frames_, updates_, stretches_, copied_at_}, torch::kInt64);
+  file.tensors["owed"] = torch::tensor({owed_}, torch::kDouble);
+  put_module(file, "online", *parts_.online);
+  put_module(file, "target", *target_);
   const auto modules = parts_.loss->modules();
-  for (std::size_t i = 0; i < modules.size(); ++i) {
-    nested("loss" + std::to_string(i), [&](auto& a) { modules[i]->save(a); });
-  }
+  for (std::size_t i = 0; i < modules.size(); ++i) put_module(file, "loss" + std::to_string(i), *modules[i]);
+  replay_.save(file);
+  // LibTorch alone knows what its optimiser holds.
+  std::ostringstream optimiser;
+  torch::save(*optimiser_, optimiser);
+  const std::string bytes = optimiser.str();
+  torch::Tensor copy = torch::empty({static_cast<long>(bytes.size())}, torch::kByte);
+  std::memcpy(copy.data_ptr(), bytes.data(), bytes.size());
+  file.tensors["optimiser"] = copy;
 }
 
-void Trainer::load(torch::serialize::InputArchive& archive) {
-  const auto nested = [&](const std::string& name, const auto& load_from) {
-    torch::serialize::InputArchive inner;
-    archive.read(name, inner);
-    load_from(inner);
-  };
-  torch::Tensor counters, owed;
-  archive.read("counters", counters);
-  archive.read("owed", owed);
-  nested("online", [&](auto& a) { parts_.online->load(a); });
-  nested("target", [&](auto& a) { target_->load(a); });
-  nested("optimiser", [&](auto& a) { optimiser_->load(a); });
-  nested("replay", [&](auto& a) { replay_.load(a); });
+void Trainer::load(const TensorFile& file) {
+  torch::Tensor counters = torch::zeros({4}, torch::kInt64), owed = torch::zeros({1}, torch::kDouble);
+  file.copy_to("counters", counters);
+  file.copy_to("owed", owed);
+  get_module(file, "online", *parts_.online);
+  get_module(file, "target", *target_);
   const auto modules = parts_.loss->modules();
-  for (std::size_t i = 0; i < modules.size(); ++i) {
-    nested("loss" + std::to_string(i), [&](auto& a) { modules[i]->load(a); });
+  for (std::size_t i = 0; i < modules.size(); ++i) get_module(file, "loss" + std::to_string(i), *modules[i]);
+  replay_.load(file);
+  const torch::Tensor& bytes = file.at("optimiser");
+  std::istringstream optimiser(std::string(static_cast<const char*>(bytes.data_ptr()), bytes.nbytes()));
+  try {
+    torch::load(*optimiser_, optimiser);
+  } catch (const c10::Error&) {
+    throw InputError("optimiser of another kind or version of LibTorch, expected the one that wrote it");
   }
   frames_ = counters[0].item<long>();
   updates_ = counters[1].item<long>();

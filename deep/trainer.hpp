@@ -8,6 +8,7 @@
 #include <maximin/deep/belief_agent.hpp>
 #include <maximin/deep/loss.hpp>
 #include <maximin/deep/replay.hpp>
+#include <maximin/deep/tensor_file.hpp>
 #include <maximin/gridworld/gridworld.hpp>
 
 namespace maximin::deep {
@@ -87,9 +88,9 @@ class Trainer {
   QNetworkPtr online() const { return parts_.online; }
 
   /// Networks, optimiser, replay memory and counters; and back, into a trainer of the same options. `load` throws
-  /// InputError or c10::Error when the archive is of something else.
-  void save(torch::serialize::OutputArchive& archive) const;
-  void load(torch::serialize::InputArchive& archive);
+  /// InputError when the file is of another training.
+  void save(TensorFile& file) const;
+  void load(const TensorFile& file);
 
  private:
   struct Pending {

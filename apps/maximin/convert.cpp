@@ -3,10 +3,10 @@
 #include <sstream>
 
 #include <maximin/apps/common/model_options.hpp>
-#include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/maximin/commands.hpp>
 #include <maximin/models/files/maximin_json.hpp>
+#include <maximin/models/files/output_file.hpp>
 
 namespace maximin::apps {
 

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include <maximin/apps/common/graphviz_program.hpp>
-#include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/maximin/counterexample.hpp>
 #include <maximin/counterexamples/exact_text.hpp>
 #include <maximin/counterexamples/gallery.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/models/make_perturbation.hpp>
 #include <maximin/tabular/graphviz.hpp>
 #include <maximin/tabular/policy_iteration.hpp>

@@ -6,12 +6,12 @@
 
 #include <maximin/apps/common/model_options.hpp>
 #include <maximin/apps/common/option_checks.hpp>
-#include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/table.hpp>
 #include <maximin/apps/maximin/commands.hpp>
 #include <maximin/apps/maximin/describe.hpp>
 #include <maximin/apps/maximin/robust.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/tabular/graphviz.hpp>
 #include <maximin/tabular/policy_iteration.hpp>
 #include <maximin/tabular/topological_value_iteration.hpp>

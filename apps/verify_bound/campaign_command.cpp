@@ -13,9 +13,9 @@
 
 #include <maximin/apps/common/interrupt.hpp>
 #include <maximin/apps/common/json_output.hpp>
-#include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/progress.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/models/make_perturbation.hpp>
 #include <maximin/models/rationalise.hpp>
 #include <maximin/proofs_check/campaign.hpp>
@@ -95,7 +95,7 @@ class CertificateFolder {
   }
 
   void write(long trial, const std::string& json, double seconds) {
-    apps::write_file(folder_ / fmt::format("trial-{}.json", trial), json, apps::Overwrite::replace);
+    write_file(folder_ / fmt::format("trial-{}.json", trial), json, Overwrite::replace);
     const std::lock_guard lock(mutex_);
     times_.emplace_back(seconds, trial);
   }
@@ -105,7 +105,7 @@ class CertificateFolder {
     std::vector<std::filesystem::path> partial;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
       const std::string name = entry.path().filename().string();
-      if (name.starts_with("trial-") && name.ends_with(apps::partial_suffix)) partial.push_back(entry.path());
+      if (name.starts_with("trial-") && name.ends_with(partial_suffix)) partial.push_back(entry.path());
     }
     std::error_code gone;
     for (const auto& file : partial) std::filesystem::remove(file, gone);
@@ -196,9 +196,8 @@ int run_campaign_command(const Options& options) {
     apps::print(verdict_text(summary, examination_options(options), replay_options(options), complete));
   }
   if (!options.report.empty()) {
-    apps::write_file(options.report,
-                     html_report(told_configuration(options), records, summary, replay_options(options)),
-                     apps::Overwrite::replace);
+    write_file(options.report, html_report(told_configuration(options), records, summary, replay_options(options)),
+               Overwrite::replace);
   }
   return exit_code(outcome(summary, complete, examination_options(options)));
 }
@@ -213,8 +212,7 @@ int run_replay_command(const Options& options) {
   if (!options.save_model.empty()) write_model(options.save_model, drawn.model);
   if (!options.report.empty()) {
     const auto rounds = round_series(drawn.model.mdp, make_perturbation(drawn.model), examination_options(options));
-    apps::write_file(options.report, html_report(told_configuration(options), record, rounds),
-                     apps::Overwrite::replace);
+    write_file(options.report, html_report(told_configuration(options), record, rounds), Overwrite::replace);
   }
   if (options.json) {
     Json json = header(options);

@@ -9,10 +9,10 @@
 #include <maximin/apps/common/interrupt.hpp>
 #include <maximin/apps/common/json_output.hpp>
 #include <maximin/apps/common/option_checks.hpp>
-#include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/progress.hpp>
 #include <maximin/apps/common/table.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/proofs_check/examination.hpp>
 #include <maximin/proofs_check/trial_record.hpp>
 
@@ -118,8 +118,7 @@ int tell(const CertifyCommand& options, const Any& certificate) {
     apps::note(conclusion(outcome));
     return exit_code(outcome);
   }
-  apps::write_file(options.output, certificate_json(certificate),
-                   options.force ? apps::Overwrite::replace : apps::Overwrite::refuse);
+  write_file(options.output, certificate_json(certificate), options.force ? Overwrite::replace : Overwrite::refuse);
   if (options.json) {
     apps::print(apps::json_text(summary_json(options, certificate, outcome)));
   } else {

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <maximin/apps/common/json_output.hpp>
-#include <maximin/apps/common/output_file.hpp>
 #include <maximin/apps/common/program.hpp>
 #include <maximin/apps/common/progress.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/models/make_perturbation.hpp>
 #include <maximin/models/rationalise.hpp>
 #include <maximin/proofs_check/certificate/exact_examination.hpp>
@@ -48,7 +48,7 @@ int run(const Model<Scalar>& model, const Options& options) {
   const ExaminationOptions asked = examination_options(options);
   nlohmann::ordered_json how = told_configuration(options);
   how["model"] = source;
-  if (rounds) apps::write_file(options.report, html_report(how, record, *rounds), apps::Overwrite::replace);
+  if (rounds) write_file(options.report, html_report(how, record, *rounds), Overwrite::replace);
   if (options.json) {
     nlohmann::ordered_json json{
         {"format", "maximin-verdict"}, {"version", 1}, {"maximin", MAXIMIN_VERSION}, {"configuration", how}};

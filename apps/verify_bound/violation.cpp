@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include <maximin/apps/common/output_file.hpp>
 #include <maximin/models/files/maximin_json.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/models/make_perturbation.hpp>
 #include <maximin/models/rationalise.hpp>
 #include <maximin/models/shrink.hpp>
@@ -44,12 +44,12 @@ std::filesystem::path name_for(const std::filesystem::path& stem, const std::str
 std::string save_under_new_name(const std::filesystem::path& stem, const Model<double>& model) {
   const std::string text = file_text(model);
   const std::filesystem::path path = name_for(stem.lexically_normal(), text);
-  apps::write_file(path, text, apps::Overwrite::replace);
+  write_file(path, text, Overwrite::replace);
   return path.string();
 }
 
 void write_model(const std::filesystem::path& path, const Model<double>& model) {
-  apps::write_file(path, file_text(model), apps::Overwrite::replace);
+  write_file(path, file_text(model), Overwrite::replace);
 }
 
 void save_violation(const Options& options, Model<double> model, long trial, ClaimId id) {

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include <maximin/deep/report/json_fields.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -87,26 +88,8 @@ ResultTable read_results(const fs::path& path) {
   return results_from_json(read_json_file(path, "a table of results"), path.string());
 }
 
-void write_whole_file(const fs::path& path, std::string_view text) {
-  // Beside the file, for a file is renamed as a whole only within a file system.
-  const fs::path part = fmt::format("{}.{}.part", path.string(), ::getpid());
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  if (!file) refuse_writing(path, errno);
-  bool good = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0 &&
-              ::fsync(::fileno(file)) == 0;
-  int reason = errno;
-  good = std::fclose(file) == 0 && good;
-  if (good && std::rename(part.c_str(), path.c_str()) != 0) {
-    good = false;
-    reason = errno;
-  }
-  if (good) return;
-  std::remove(part.c_str());
-  refuse_writing(path, reason);
-}
-
 void write_results(const fs::path& path, const ResultTable& table) {
-  write_whole_file(path, readable_json(to_json(table)));
+  write_file(path, readable_json(to_json(table)), Overwrite::replace);
 }
 
 /// A file beside the table, held as long as one writes: the table itself is replaced at each writing.

@@ -27,9 +27,6 @@ ResultTable read_results(const std::filesystem::path& path);
 /// Throws InputError when the system refuses.
 void write_results(const std::filesystem::path& path, const ResultTable& table);
 
-/// Writes any text so.
-void write_whole_file(const std::filesystem::path& path, std::string_view text);
-
 /// A table that is made cell by cell and survives interruption: after each run the file holds all that is done.
 ///
 ///     ResultFile file = ResultFile::open("table.json", plan);

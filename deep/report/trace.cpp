@@ -6,6 +6,7 @@
 
 #include <maximin/deep/report/json_fields.hpp>
 #include <maximin/deep/report/results_file.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -168,7 +169,7 @@ EpisodeTrace trace_from_json(const Json& json, std::string_view where) {
 }
 
 void write_trace(const std::filesystem::path& path, const EpisodeTrace& trace) {
-  write_whole_file(path, readable_json(to_json(trace)));
+  write_file(path, readable_json(to_json(trace)), Overwrite::replace);
 }
 
 EpisodeTrace read_trace(const std::filesystem::path& path) {

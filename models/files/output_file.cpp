@@ -1,4 +1,4 @@
-#include <maximin/apps/common/output_file.hpp>
+#include <maximin/models/files/output_file.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 
 #include <maximin/theory/error.hpp>
 
-namespace maximin::apps {
+namespace maximin {
 
 namespace {
 
@@ -90,4 +90,4 @@ void write_file(const fs::path& path, std::string_view content, Overwrite overwr
   if (rename(temporary.name(), target.c_str()) != 0) fail(path, "a file name that can be written");
 }
 
-}  // namespace maximin::apps
+}  // namespace maximin

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace maximin::apps {
+namespace maximin {
 
 /// What to do when the file exists.
 enum class Overwrite { refuse, replace };
@@ -15,4 +15,4 @@ inline constexpr const char* partial_suffix = ".partial";
 /// when it cannot be written, or exists and may not be replaced.
 void write_file(const std::filesystem::path& path, std::string_view content, Overwrite overwrite);
 
-}  // namespace maximin::apps
+}  // namespace maximin
