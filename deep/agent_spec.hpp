@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <maximin/deep/q_network.hpp>
+#include <maximin/deep/trainer.hpp>
+
+namespace maximin::deep {
+
+/// Everything that makes an agent: what it believes, what it is trained on, for how long. The same specification with
+/// the same seed is the same agent. A field's name here is its name in configuration files.
+struct AgentSpec {
+  std::string kind = "dqn";  ///< for people and for tables
+  double eps = 0.1;          ///< radius of the ball that it is trained to withstand and believes in
+  QNetworkShape network;
+  std::string loss = "td";         ///< td, sa, wocar, radial, car
+  std::string belief = "observed";  ///< observed, ball, exact, pf-lstm, pf-gru
+  long belief_states = 1;           ///< K of set beliefs when acting
+  long training_belief_states = 1;  ///< and in the replay memory
+  std::string aggregator = "mean";  ///< min, mean, soft-min:BETA, cvar:ALPHA
+  bool double_q = true;
+  std::string target_order = "max-of-aggregate";  ///< or aggregate-of-max, as in the released Gridworld code
+  double discount = 0.99;
+  std::string train_attack = "none";  ///< none, random, pgd, min-best, mixed
+  std::string start_from;             ///< kind of agent whose weights the training begins with; empty: none
+  double random_actions = 0;          ///< share of random actions after training
+  TrainOptions training;
+
+  /// The agent's name in files: "bp-dqn-eps0.5-seed1"; without eps where none was trained for.
+  std::string name() const;
+  /// Whether eps has a part in it.
+  bool knows_eps() const { return belief != "observed" || loss != "td" || train_attack != "none"; }
+};
+
+/// Kinds that `recipe` knows.
+const std::vector<std::string>& agent_kinds();
+
+/// How the project trains an agent of this kind, eps and training seed. `quick`: a training of seconds, that shows that
+/// everything works and no more. Throws InputError on a kind that it does not know, naming the nearest.
+AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, bool quick = false);
+
+/// Every field, in order.
+nlohmann::ordered_json to_json(const AgentSpec& spec);
+/// Takes over the fields that `json` names and leaves the others as they are. Throws InputError, "WHERE: FIELD: what is
+/// wrong, expected ...", on a field that there is none of, or of another type, or out of range.
+void merge_json(AgentSpec& spec, const nlohmann::ordered_json& json, const std::string& where);
+
+}  // namespace maximin::deep

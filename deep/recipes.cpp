@@ -1,0 +1,99 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <maximin/deep/agent_spec.hpp>
+#include <maximin/models/nearest_name.hpp>
+#include <maximin/theory/error.hpp>
+
+namespace maximin::deep {
+namespace {
+
+/// What all have in common: the vanilla DQN of the Gridworld.
+AgentSpec vanilla(std::uint64_t seed) {
+  AgentSpec s;
+  s.kind = "dqn";
+  s.network.waves = 2;
+  s.training.seed = seed;
+  s.training.frames = 1'000'000;
+  s.training.learning_rate = 2e-3;
+  s.training.final_learning_rate = 1e-4;
+  s.training.target_every = 1000;
+  s.training.explore_frames = 400'000;
+  return s;
+}
+
+/// The robust part of a training that begins with a vanilla DQN.
+void continue_from_vanilla(AgentSpec& s) {
+  s.start_from = "dqn";
+  s.training.frames = 500'000;
+  s.training.learning_rate = 1e-3;
+  s.training.explore_start = 0.1;
+  s.training.explore_end = 0.03;
+  s.training.explore_frames = 100'000;
+}
+
+AgentSpec belief_pessimistic(std::uint64_t seed, const char* belief) {
+  AgentSpec s = vanilla(seed);
+  continue_from_vanilla(s);
+  s.belief = belief;
+  s.belief_states = 32;
+  s.training_belief_states = 8;
+  s.aggregator = "mean";
+  s.double_q = false;
+  s.train_attack = "mixed";
+  return s;
+}
+
+AgentSpec robust_baseline(std::uint64_t seed, const char* loss) {
+  AgentSpec s = vanilla(seed);
+  s.loss = loss;
+  return s;
+}
+
+AgentSpec full_recipe(std::string_view kind, std::uint64_t seed) {
+  if (kind == "dqn") return vanilla(seed);
+  if (kind == "sa-dqn") return robust_baseline(seed, "sa");
+  if (kind == "wocar-dqn") return robust_baseline(seed, "wocar");
+  if (kind == "radial-dqn") return robust_baseline(seed, "radial");
+  if (kind == "car-dqn") return robust_baseline(seed, "car");
+  if (kind == "bp-dqn") return belief_pessimistic(seed, "exact");
+  if (kind == "bp-dqn-lstm") return belief_pessimistic(seed, "pf-lstm");
+  if (kind == "bp-dqn-gru") return belief_pessimistic(seed, "pf-gru");
+  AgentSpec noisy = belief_pessimistic(seed, "pf-lstm");  // "bp-dqn-noisy"
+  noisy.start_from.clear();
+  noisy.training = vanilla(seed).training;
+  noisy.train_attack = "pgd";
+  noisy.training.learn_from_belief = true;
+  return noisy;
+}
+
+}  // namespace
+
+const std::vector<std::string>& agent_kinds() {
+  static const std::vector<std::string> kinds{"dqn",        "sa-dqn",  "wocar-dqn", "radial-dqn",  "car-dqn",
+                                              "bp-dqn",     "bp-dqn-lstm", "bp-dqn-gru", "bp-dqn-noisy"};
+  return kinds;
+}
+
+AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, bool quick) {
+  if (std::find(agent_kinds().begin(), agent_kinds().end(), kind) == agent_kinds().end()) {
+    const std::string nearest = nearest_name(kind, agent_kinds());
+    throw InputError(fmt::format("agent: {}, expected {}", kind,
+                                 nearest.empty() ? fmt::format("{}", fmt::join(agent_kinds(), ", ")) : nearest));
+  }
+  AgentSpec s = full_recipe(kind, seed);
+  s.kind = kind;
+  s.eps = eps;
+  if (quick) {
+    const double share = 0.06;
+    s.training.frames = static_cast<long>(static_cast<double>(s.training.frames) * share);
+    s.training.explore_frames = static_cast<long>(static_cast<double>(s.training.explore_frames) * share);
+    s.training.stretch_frames = 5000;
+    s.training.warm_up = 1000;
+  }
+  return s;
+}
+
+}  // namespace maximin::deep

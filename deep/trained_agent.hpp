@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include <maximin/deep/agent_spec.hpp>
+#include <maximin/deep/belief_agent.hpp>
+#include <maximin/deep/loss.hpp>
+#include <maximin/deep/pf_rnn.hpp>
+#include <maximin/deep/report/training_log.hpp>
+#include <maximin/deep/trainer.hpp>
+
+namespace maximin::deep {
+
+/// Networks with what they are: enough to act.
+struct TrainedAgent {
+  AgentSpec spec;
+  QNetworkPtr q;                 ///< what was trained
+  std::shared_ptr<Loss> loss;    ///< with further networks, if it owns any
+  PfRnnPtr particle_filter;      ///< where the belief is one, else empty
+  double training_seconds = 0;   ///< of this part of the pipeline
+  double belief_seconds = 0;     ///< of the particle filter's training
+
+  /// What it acts by, and what attacks differentiate: in units of training rewards, reward_scale times rewards.
+  std::shared_ptr<ActionValueModule> values() const { return loss->acting(q); }
+};
+
+/// How to act, where that differs from the specification: ablations take parts of an agent.
+struct Acting {
+  std::string belief;
+  long belief_states = 32;
+  std::string aggregator;
+  double random_actions = 0;
+};
+Acting acting_of(const AgentSpec& spec);
+
+/// An agent out of its parts, for episodes in step.
+std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Acting& acting);
+
+/// Networks before training.
+TrainedAgent untrained(const AgentSpec& spec);
+
+/// The agent's file, kind "agent". Throws InputError as tensor files do.
+void write_agent(const std::filesystem::path& path, const TrainedAgent& agent);
+TrainedAgent read_agent(const std::filesystem::path& path);
+
+/// What is told while an agent is trained. `stretch` returns false to stop.
+struct TrainingHooks {
+  std::function<void(const std::string& part, long frames)> begin;  ///< a part of the pipeline begins, of so many frames
+  std::function<bool(const CurvePoint& point)> stretch;
+};
+
+/// Columns of the training log, one row per stretch.
+std::vector<std::string> training_columns();
+std::vector<std::optional<double>> training_row(const CurvePoint& point);
+
+/// Trains the agent in `folder`, where files stand by AgentSpec::name(): NAME.agent when done, NAME.csv the curve,
+/// NAME.training the checkpoint of a training under way, which a later call continues bit for bit. What the agent begins
+/// with (a vanilla DQN of the same seed, a particle filter) is trained first where it is not there. Returns the agent,
+/// from its file where it is there already; nothing where a hook stopped it. Throws InputError when a file there is of
+/// another specification.
+std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const std::filesystem::path& folder, torch::Device device,
+                                        bool quick, const TrainingHooks& hooks);
+
+}  // namespace maximin::deep
