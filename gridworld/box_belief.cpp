@@ -2,61 +2,100 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace maximin {
+namespace {
 
-const BoxUnion& open_area() {
-  static const BoxUnion area = [] {
-    std::vector<Box> cells;
-    for (int i = 0; i < gridworld::side; ++i) {
-      for (int j = 0; j < gridworld::side; ++j) {
-        if (gridworld::cell(i, j) != gridworld::Cell::free) continue;
-        cells.push_back({double(i), i + 1.0, double(j), j + 1.0});
-      }
+BoxUnion cells_where(bool (*wanted)(gridworld::Cell)) {
+  std::vector<Box> cells;
+  for (int i = 0; i < gridworld::side; ++i) {
+    for (int j = 0; j < gridworld::side; ++j) {
+      if (wanted(gridworld::cell(i, j))) cells.push_back({double(i), i + 1.0, double(j), j + 1.0});
     }
-    return BoxUnion(std::move(cells));
-  }();
+  }
+  return BoxUnion(cells);
+}
+
+/// Where a world that starts anywhere may start: gold and bomb too.
+const BoxUnion& area_without_walls() {
+  static const BoxUnion area = cells_where([](gridworld::Cell c) { return c != gridworld::Cell::wall; });
   return area;
 }
 
-BoxUnion move_successors(const BoxUnion& from, Action action) {
-  const gridworld::Move& move = gridworld::moves.at(static_cast<std::size_t>(action));
-  std::vector<Box> parts;
-  for (const Box& box : from.boxes()) {
-    const int i_first = static_cast<int>(std::floor(box.x_low + move.dx));
-    const int i_last = static_cast<int>(std::floor(box.x_high - gridworld::quantum + move.dx));
-    const int j_first = static_cast<int>(std::floor(box.y_low + move.dy));
-    const int j_last = static_cast<int>(std::floor(box.y_high - gridworld::quantum + move.dy));
-    for (int i = i_first; i <= i_last; ++i) {
-      for (int j = j_first; j <= j_last; ++j) {
-        const gridworld::Cell target = gridworld::cell(i, j);
-        if (gridworld::ends_episode(target)) continue;
-        const Box part = meet(box, {i - move.dx, i + 1 - move.dx, j - move.dy, j + 1 - move.dy});
-        if (target == gridworld::Cell::wall) {
-          parts.push_back(part);
-        } else {
-          parts.push_back({part.x_low + move.dx, part.x_high + move.dx, part.y_low + move.dy, part.y_high + move.dy});
-        }
+/// The cells that an interval of ends touches.
+struct Cells {
+  int first, last;
+  Cells(double low, double high)
+      : first(static_cast<int>(std::floor(low))), last(static_cast<int>(std::floor(high - gridworld::quantum))) {}
+};
+
+/// Adds what the move makes of a box, as far as it lies in `within`. Neighbouring cells of one kind are one part: the
+/// fewer parts, the sooner their union is found.
+void move_box(const Box& box, const gridworld::Move& move, const Box& within, std::vector<Box>& parts) {
+  const Box ends{box.x_low + move.dx, box.x_high + move.dx, box.y_low + move.dy, box.y_high + move.dy};
+  const Cells columns(ends.x_low, ends.x_high), rows(ends.y_low, ends.y_high);
+  for (int j = rows.first; j <= rows.last; ++j) {
+    for (int i = columns.first, next = i; i <= columns.last; i = next) {
+      const gridworld::Cell target = gridworld::cell(i, j);
+      while (next <= columns.last && gridworld::cell(next, j) == target) ++next;
+      if (gridworld::ends_episode(target)) continue;
+      Box part = meet(ends, {double(i), double(next), double(j), j + 1.0});
+      if (target == gridworld::Cell::wall) {
+        part = {part.x_low - move.dx, part.x_high - move.dx, part.y_low - move.dy, part.y_high - move.dy};
       }
+      part = meet(part, within);
+      if (!part.empty()) parts.push_back(part);
     }
   }
-  return BoxUnion(std::move(parts));
+}
+
+}  // namespace
+
+const BoxUnion& open_area() {
+  static const BoxUnion area = cells_where([](gridworld::Cell c) { return c == gridworld::Cell::free; });
+  return area;
+}
+
+void move_successors(const BoxUnion& from, Action action, const Box& within, BoxUnion& out) {
+  thread_local std::vector<Box> parts;
+  const gridworld::Move& move = gridworld::moves.at(static_cast<std::size_t>(action));
+  parts.clear();
+  for (const Box& box : from.boxes()) move_box(box, move, within, parts);
+  out.assign(parts);
+}
+
+BoxUnion move_successors(const BoxUnion& from, Action action) {
+  constexpr double far = 2.0 * gridworld::side;
+  BoxUnion out;
+  move_successors(from, action, {-far, far, -far, far}, out);
+  return out;
+}
+
+void BoxBelief::trust(Point observation, const BoxUnion& area, BoxUnion& out) const {
+  out = area;
+  out.keep(ball_.around(observation));
+  if (out.empty()) out = area;
 }
 
 const BoxUnion& BoxBelief::reset(Point observation) {
-  belief_ = open_area().meet(ball_.around(observation));
-  if (belief_.empty()) belief_ = open_area();
+  trust(observation, start_anywhere_ ? area_without_walls() : open_area(), belief_);
   return belief_;
 }
 
+void BoxBelief::would_update(Action action, Point observation, BoxUnion& out) const {
+  move_successors(belief_, action, ball_.around(observation), out);
+  if (out.empty()) trust(observation, open_area(), out);
+}
+
 const BoxUnion& BoxBelief::update(Action action, Point observation) {
-  BoxUnion met = move_successors(belief_, action).meet(ball_.around(observation));
-  if (met.empty()) {
+  move_successors(belief_, action, ball_.around(observation), next_);
+  if (next_.empty()) {
     ++empty_;
-    return reset(observation);
+    trust(observation, open_area(), next_);
   }
-  belief_ = std::move(met);
+  std::swap(belief_, next_);
   return belief_;
 }
 

@@ -2,21 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <stdexcept>
 
 namespace maximin {
 namespace {
 
 struct Interval {
   double low, high;
-  friend bool operator==(const Interval&, const Interval&) = default;
 };
 
-/// The intervals of x that boxes cover at height y, disjoint and ascending.
-void covered_at(double y, const std::vector<Box>& boxes, std::vector<Interval>& out) {
+/// What `assign` works with, kept from call to call: an update of a belief then allocates nothing.
+struct Scratch {
+  std::vector<double> edges;
+  std::vector<Interval> row;
+};
+
+/// The intervals of x that boxes cover at height y, disjoint, with gaps between them, and ascending.
+void covered_at(double y, std::span<const Box> boxes, std::vector<Interval>& out) {
   out.clear();
   for (const Box& b : boxes) {
-    if (b.y_low <= y && y < b.y_high) out.push_back({b.x_low, b.x_high});
+    if (b.y_low <= y && y < b.y_high && b.x_low < b.x_high) out.push_back({b.x_low, b.x_high});
   }
   std::sort(out.begin(), out.end(), [](auto& a, auto& b) { return a.low < b.low; });
   std::size_t kept = 0;
@@ -30,6 +35,21 @@ void covered_at(double y, const std::vector<Box>& boxes, std::vector<Interval>& 
   out.resize(kept);
 }
 
+/// Makes one slab of the two whose boxes are [first, second) and [second, end) if they touch and cover the same x: the
+/// second goes. Returns where the last slab begins now.
+std::size_t join_slabs(std::vector<Box>& boxes, std::size_t first, std::size_t second) {
+  const std::size_t count = boxes.size() - second;
+  if (count == 0) return first;
+  if (second - first != count || boxes[first].y_high != boxes[second].y_low) return second;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Box &below = boxes[first + k], &above = boxes[second + k];
+    if (below.x_low != above.x_low || below.x_high != above.x_high) return second;
+  }
+  for (std::size_t k = 0; k < count; ++k) boxes[first + k].y_high = boxes[second + k].y_high;
+  boxes.resize(second);
+  return first;
+}
+
 }  // namespace
 
 Box meet(const Box& a, const Box& b) {
@@ -37,28 +57,50 @@ Box meet(const Box& a, const Box& b) {
           std::min(a.y_high, b.y_high)};
 }
 
-// Slabs between neighbouring horizontal edges, each cut into maximal intervals; slabs with equal intervals are one.
-BoxUnion::BoxUnion(std::vector<Box> boxes) {
-  std::erase_if(boxes, [](const Box& b) { return b.empty(); });
-  if (boxes.size() < 2) {
-    boxes_ = std::move(boxes);
+// Slabs between neighbouring horizontal edges, each cut into maximal intervals; neighbours with equal intervals are
+// one.
+void BoxUnion::assign(std::span<const Box> boxes) {
+  thread_local Scratch scratch;
+  auto& [edges, row] = scratch;
+  boxes_.clear();
+  if (boxes.size() == 1 && !boxes.front().empty()) {
+    boxes_.push_back(boxes.front());
     return;
   }
-  std::vector<double> edges;
-  for (const Box& b : boxes) edges.insert(edges.end(), {b.y_low, b.y_high});
+  edges.clear();
+  for (const Box& b : boxes) {
+    if (!b.empty()) edges.insert(edges.end(), {b.y_low, b.y_high});
+  }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  std::vector<Interval> row, previous;
-  std::size_t first_of_slab = 0;
+  std::size_t last_slab = 0;
   for (std::size_t e = 0; e + 1 < edges.size(); ++e) {
     covered_at(edges[e], boxes, row);
-    if (row == previous) {
-      for (std::size_t k = first_of_slab; k < boxes_.size(); ++k) boxes_[k].y_high = edges[e + 1];
-    } else {
-      first_of_slab = boxes_.size();
-      for (const Interval& i : row) boxes_.push_back({i.low, i.high, edges[e], edges[e + 1]});
-      previous.swap(row);
-    }
+    const std::size_t slab = boxes_.size();
+    for (const Interval& i : row) boxes_.push_back({i.low, i.high, edges[e], edges[e + 1]});
+    last_slab = join_slabs(boxes_, last_slab, slab);
+  }
+}
+
+// What is left of a slab is a slab, but two that differed outside the box may have become one.
+void BoxUnion::keep(const Box& box) {
+  const std::size_t before = boxes_.size();
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < before; ++k) {
+    const Box part = maximin::meet(boxes_[k], box);
+    if (!part.empty()) boxes_[kept++] = part;
+  }
+  boxes_.resize(kept);
+  if (kept < 2) return;
+  thread_local std::vector<Box> cut;
+  cut.swap(boxes_);
+  boxes_.clear();
+  std::size_t last_slab = 0;
+  for (std::size_t k = 0; k < cut.size();) {
+    const std::size_t slab = boxes_.size();
+    const double y = cut[k].y_low;
+    while (k < cut.size() && cut[k].y_low == y) boxes_.push_back(cut[k++]);
+    last_slab = join_slabs(boxes_, last_slab, slab);
   }
 }
 
@@ -73,9 +115,9 @@ bool BoxUnion::contains(Point p) const {
 }
 
 BoxUnion BoxUnion::meet(const Box& box) const {
-  std::vector<Box> parts;
-  for (const Box& b : boxes_) parts.push_back(maximin::meet(b, box));
-  return BoxUnion(std::move(parts));
+  BoxUnion result = *this;
+  result.keep(box);
+  return result;
 }
 
 Box BoxUnion::hull() const {
@@ -91,6 +133,8 @@ Box BoxUnion::hull() const {
 // The first coordinate of the R2 sequence (Roberts, 2018: inverse powers of the plastic number) chooses the box by area
 // and the place across it, the second the height.
 std::vector<Point> BoxUnion::spread(int count) const {
+  if (count < 0) throw std::invalid_argument("spread: a negative count, expected 0 or more");
+  if (boxes_.empty()) throw std::invalid_argument("spread: an empty set, expected one with points");
   constexpr double step_x = 0.7548776662466927, step_y = 0.5698402909980532;
   const double total = area();
   std::vector<Point> points;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <maximin/gridworld/gridworld.hpp>
@@ -25,7 +26,12 @@ class BoxUnion {
  public:
   BoxUnion() = default;
   /// The union of boxes that may overlap or be empty.
-  explicit BoxUnion(std::vector<Box> boxes);
+  explicit BoxUnion(std::span<const Box> boxes) { assign(boxes); }
+
+  /// Becomes the union of boxes that may overlap or be empty, but are not its own. Keeps its memory for the next time.
+  void assign(std::span<const Box> boxes);
+  /// Loses what lies outside the box.
+  void keep(const Box& box);
 
   const std::vector<Box>& boxes() const { return boxes_; }
   bool empty() const { return boxes_.empty(); }
@@ -36,8 +42,8 @@ class BoxUnion {
   /// The smallest box around it. Of an empty set, an empty box.
   Box hull() const;
 
-  /// `count` points of the set, spread evenly by area: number k is the same for the same set. The set must not be
-  /// empty; points lie on the quantum grid.
+  /// `count` points of the set, spread evenly by area: number k is the same for the same set, whatever the count.
+  /// Points lie on the quantum grid. Throws std::invalid_argument when the set is empty or the count negative.
   std::vector<Point> spread(int count) const;
 
   friend bool operator==(const BoxUnion&, const BoxUnion&) = default;

@@ -4,10 +4,12 @@
 #include <concepts>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <maximin/theory/concepts.hpp>
+#include <maximin/theory/error.hpp>
 #include <maximin/theory/rollout.hpp>
 
 /// Many episodes in step: what costs little for one costs less for 64 at once, when a network looks at all of them. The
@@ -112,15 +114,17 @@ struct EpisodesInStep {
 /// Plays the episodes, as many in step as there are lanes; a lane whose episode is over takes the next one. Returns
 /// them in order of their number. Episode k is what `rollout` plays with Stream(seed, k), whatever the lanes, as far as
 /// the agent's and the attack's answers do not depend on who is asked with them (a network's may, in the last digit).
-/// `observe(k, record)` is called after every step of episode k.
+/// `observe(k, record)` is called after every step of episode k. Throws InputError when there is less than one lane.
 template <Environment Env, AgentInStep AgentT, class AttackT, class Observer>
 requires AttackInStep<AttackT, typename Env::StateType, AgentT> std::vector<Episode> rollout_in_step(
     Env& env, AgentT& agent, AttackT& attack, const EpisodesInStep& options, Observer&& observe) {
   using StateT = typename Env::StateType;
   using ObservationT = typename AgentT::ObservationType;
   using ActionT = typename AgentT::ActionType;
-  const auto width = static_cast<std::size_t>(std::min<long>(options.lanes, options.episodes));
+  if (options.lanes < 1) throw InputError("lanes: " + std::to_string(options.lanes) + ", expected at least 1");
   std::vector<Episode> episodes(static_cast<std::size_t>(options.episodes));
+  if (options.horizon < 1) return episodes;
+  const auto width = static_cast<std::size_t>(std::min<long>(options.lanes, options.episodes));
   std::vector<double> weight(episodes.size(), 1.0);
   std::vector<Stream> streams(width, Stream(options.seed));
   std::vector<StateT> state(width);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <maximin/gridworld/gridworld.hpp>
 #include <maximin/models/builtin_models.hpp>
 #include <maximin/models/chain.hpp>
 #include <maximin/models/garnet.hpp>
@@ -211,6 +212,85 @@ TEST(GridworldLattice, IsWorthTheShortestWayToTheGold) {
     const double far = std::pow(0.99, count - 1);
     EXPECT_NEAR(v[s], 200 * far - (1 - far) / (1 - 0.99), 1e-8);
   }
+}
+
+/// Every transition of a lattice against the continuous world's step from the same point: straight moves exactly,
+/// diagonal ones to within `off` on each axis and, where they are interpolated clear of walls, exactly in the mean.
+/// Says what is wrong; nothing if all is well.
+std::string fault(const Model<double>& m, double off, bool interpolated) {
+  const ContinuousGridworld world;
+  for (State s = 0; s < m.mdp.states(); ++s) {
+    if (m.start[static_cast<std::size_t>(s)] == 0) continue;
+    const Point from{m.geometry.points(s, 0), m.geometry.points(s, 1)};
+    for (Action a = 0; a < 8; ++a) {
+      const auto o = world.step(from, a);
+      const bool diagonal = a % 2 == 1;
+      const auto row = m.mdp.successors(s, a);
+      const bool stays = row.size() == 1 && row[0].target == s;
+      if (!diagonal || interpolated) {
+        if (m.mdp.reward(s, a) != o.reward) return "reward";
+        if (stays != (o.next == from)) return "walls";
+      }
+      if (stays || m.mdp.reward(s, a) != o.reward) continue;
+      double x = -o.next.x, y = -o.next.y, sum = 0;
+      for (const auto& next : row) {
+        const double nx = m.geometry.points(next.target, 0), ny = m.geometry.points(next.target, 1);
+        x += next.probability * nx;
+        y += next.probability * ny;
+        sum += next.probability;
+        if (o.next != from && std::max(std::abs(nx - o.next.x), std::abs(ny - o.next.y)) > (diagonal ? off : 1e-9)) {
+          return "place";
+        }
+      }
+      if (std::abs(sum - 1) > 1e-12) return "probabilities";
+      bool clear = interpolated;
+      for (const double dx : {-off, off}) {
+        for (const double dy : {-off, off}) {
+          clear = clear && gridworld::cell({o.next.x + dx, o.next.y + dy}) == gridworld::cell(o.next);
+        }
+      }
+      if (clear && std::hypot(x, y) > 1e-9) return "mean";
+    }
+  }
+  return "";
+}
+
+TEST(GridworldLattice, FollowsTheContinuousWorldAtEverySpacing) {
+  const double diagonal = gridworld::diagonal;
+  for (const int k : {1, 2, 3, 5, 7}) {
+    const double h = 0.5 / k, off = std::abs(std::round(diagonal / h) * h - diagonal) + 1e-9;
+    const auto m = gridworld_lattice({.spacing = h});
+    EXPECT_EQ(m.mdp.states(), 272 * k * k);
+    EXPECT_EQ(m.mdp.transition_count(), static_cast<std::size_t>(8 * m.mdp.states()));
+    EXPECT_EQ(fault(m, off, false), "") << h;
+    EXPECT_EQ(fault(m, off / 2, false), "place") << "no nearer than the lattice allows";
+    const auto mixed = gridworld_lattice({.spacing = h, .diagonal = DiagonalMove::interpolated});
+    EXPECT_EQ(fault(mixed, h, true), "") << h;
+    EXPECT_NE(fault(m, h, true), "") << "moves to the nearest point are not interpolated";
+  }
+}
+
+TEST(GridworldLattice, RefusesSpacingsThatStraightMovesDoNotFit) {
+  for (const double spacing : {0.0, -0.5, 1.0, 0.3, 0.2, 0.001, std::nan("")}) {
+    EXPECT_NE(error_of([&] { gridworld_lattice({.spacing = spacing}); }).find("spacing: "), std::string::npos)
+        << spacing;
+  }
+  EXPECT_EQ(error_of([] { gridworld_lattice({.spacing = 0.3}); }),
+            "spacing: 0.3, expected 0.5 divided by a whole number from 1 to 50");
+}
+
+/// Finer lattices see smaller balls: of 0.1 only what is no coarser than that sees any.
+TEST(GridworldLattice, BallsNeedALatticeAsFineAsTheyAre) {
+  const auto size_at = [](double spacing) {
+    const auto m = gridworld_lattice({.eps = 0.1, .spacing = spacing});
+    const auto balls = make_perturbation(m);
+    std::size_t largest = 0;
+    for (State s = 0; s < m.mdp.states(); ++s) largest = std::max(largest, balls.ball(s).size());
+    return largest;
+  };
+  EXPECT_EQ(size_at(0.5), 1u);
+  EXPECT_EQ(size_at(0.125), 1u);
+  EXPECT_EQ(size_at(0.1), 9u);
 }
 
 TEST(BuiltinModels, AreValidAndComplete) {
