@@ -62,13 +62,17 @@ Tensor times(const Tensor& rows, const Tensor& x) {
   return rows.dim() == 2 ? x.matmul(rows.t()) : rows.matmul(x.unsqueeze(2)).squeeze(2);
 }
 
+// What rounding can amount to where the rows are applied to what is made of such magnitudes, after so many roundings.
+Tensor margin(const AffineRows& f, const Tensor& magnitude, double roundings_before) {
+  const Tensor sums = times(f.row_magnitude, magnitude) + f.offset_magnitude;
+  return machine_epsilon(sums) * (roundings_before + f.terms()) * sums;
+}
+
 // Upper bounds of affine functions over boxes: rows middle + |rows| radius, exact but for rounding.
 Tensor interval_upper(const AffineRows& f, const Interval& x) {
   const Tensor middle = x.middle(), radius = x.radius();
   const Tensor bound = times(f.rows, middle) + f.offset + times(f.rows.abs(), radius);
-  torch::NoGradGuard no_grad;
-  const Tensor magnitude = times(f.row_magnitude, middle.abs() + radius) + f.offset_magnitude;
-  return bound + machine_epsilon(bound) * f.terms() * magnitude;
+  return bound + margin(f, (middle.abs() + radius).detach(), 0);
 }
 
 // relu(z) <= upper_slope z + intercept and relu(z) >= lower_slope z for z in an interval. [n, width] each.
@@ -181,9 +185,7 @@ Tensor HiddenBounds::linear_upper(const AffineRows& f) const {
   Tensor d = f.offset.dim() == 1 ? f.offset.unsqueeze(0) : f.offset;
   for (std::size_t i = layers_.size(); i-- > 0;) step_down(relaxations_[i], layers_[i], a, d);
   const Tensor bound = d + times(a, input_.middle()) + times(a.abs(), input_.radius());
-  torch::NoGradGuard no_grad;
-  const Tensor magnitude = times(f.row_magnitude, magnitude_) + f.offset_magnitude;
-  return bound + machine_epsilon(bound) * (roundings_ + f.terms()) * magnitude;
+  return bound + margin(f, magnitude_, roundings_);
 }
 
 std::string shape_text(const Tensor& t) {
