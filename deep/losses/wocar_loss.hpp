@@ -88,12 +88,13 @@ class WocarLoss final : public Loss {
   QNetwork& critic() { return *critic_; }
   QNetwork& critic_target() { return *critic_target_; }
 
-  /// Actions that an attacker may bring about at these states, [b, actions], bool.
-  torch::Tensor reachable(const torch::Tensor& states, const QNetwork& online, const Progress& progress) const;
+  /// Actions that an attacker may bring about at these states, [b, actions], bool: those that the action which is
+  /// greedy at the state does not provably beat in all of the ball. None that can be brought about is missing.
+  torch::Tensor reachable(const torch::Tensor& states, QNetwork& online, const Progress& progress) const;
   /// y, [b], without gradient: the acting values choose the next action.
   torch::Tensor target_values(const Batch& batch, QNetwork& online, QNetwork& target) const;
   /// y_w, [b], without gradient.
-  torch::Tensor critic_target_values(const Batch& batch, const QNetwork& online, const Progress& progress) const;
+  torch::Tensor critic_target_values(const Batch& batch, QNetwork& online, const Progress& progress) const;
   /// The robust term, [b], given Q(s, .) ([b, actions]) and y ([b]).
   torch::Tensor robust_term(const Batch& batch, QNetwork& online, const torch::Tensor& values, const torch::Tensor& y,
                             const Progress& progress) const;

@@ -311,6 +311,37 @@ TEST(WocarLoss, HandComputed) {
   EXPECT_TRUE(torch::allclose(values->forward(row({0}).unsqueeze(1)), row({0.1 - 1.8, 0.2 - 4.5}).unsqueeze(0)));
 }
 
+// What sampling brings about is reachable; with a smaller radius than the attacker's it would not be.
+TEST(WocarLoss, NoActionThatCanBeBroughtAboutIsMissing) {
+  torch::NoGradGuard no_grad;
+  const QNetworkShape shape{.inputs = 2, .hidden = {8, 8}, .actions = 4};
+  std::array<long, 2> missing{};
+  long unreachable = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    for (const bool faulty : {false, true}) {
+      Stream rng(seed, 51);
+      const auto online = random_network(shape, rng, torch::kFloat, 2);
+      WocarLossOptions options;
+      options.worst_share = 0.4;
+      options.reach_bounds = BoundMethod::crown;
+      if (faulty) options.critic_eps = 0.1;
+      options.ramp.eps = 0.5;
+      WocarLoss loss(options, shape, rng);
+      const Tensor states = random_points(8, 2, 0, 10, rng, torch::kFloat);
+      const Tensor reach = loss.reachable(states, *online, kEnd);
+      unreachable += (~reach).sum().item<long>();
+      const auto acting = loss.acting(online);
+      for (int i = 0; i < 20; ++i) {
+        const Tensor x = (states + random_points(8, 2, -0.5, 0.5, rng, torch::kFloat)).clamp(0, 10);
+        missing[faulty] += (~of_actions(reach, acting->forward(x).argmax(1))).sum().item<long>();
+      }
+    }
+  }
+  EXPECT_EQ(missing[false], 0);
+  EXPECT_GT(missing[true], 20);
+  EXPECT_GT(unreachable, 500);
+}
+
 TEST(WocarLoss, RobustTermsHandComputed) {
   const Batch batch = three_transitions();
   Affine q;
