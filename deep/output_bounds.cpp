@@ -36,10 +36,10 @@ struct Interval {
   }
 };
 
-// k affine functions of a layer's activations, the same for all samples or other ones for each.
+// k affine functions of a layer's activations.
 struct AffineRows {
-  Tensor rows;    // [k, width] or [n, k, width]
-  Tensor offset;  // [k] or [n, k]
+  Tensor rows;    // [k, width]
+  Tensor offset;  // [k]
   // What the rows are made of, in absolute values: the scale of rounding errors. No gradient.
   Tensor row_magnitude, offset_magnitude;
 
@@ -48,13 +48,6 @@ struct AffineRows {
   }
 
   double terms() const { return static_cast<double>(rows.size(-1)) + kFurtherRoundings; }
-
-  // The functions, and after them their negatives: upper bounds of these are lower bounds of those.
-  AffineRows with_negatives() const {
-    const long axis = rows.dim() - 2;
-    return {torch::cat({rows, -rows}, axis), torch::cat({offset, -offset}, axis),
-            torch::cat({row_magnitude, row_magnitude}, axis), torch::cat({offset_magnitude, offset_magnitude}, axis)};
-  }
 };
 
 // rows x per sample: [n, k] from x [n, width].
@@ -62,13 +55,18 @@ Tensor times(const Tensor& rows, const Tensor& x) {
   return rows.dim() == 2 ? x.matmul(rows.t()) : rows.matmul(x.unsqueeze(2)).squeeze(2);
 }
 
-// Upper bounds of affine functions over boxes: rows middle + |rows| radius, exact but for rounding.
-Tensor interval_upper(const AffineRows& f, const Interval& x) {
+// What rounding can amount to where the rows are applied to what is made of such magnitudes, after so many roundings.
+Tensor margin(const AffineRows& f, const Tensor& magnitude, double roundings_before) {
+  const Tensor sums = times(f.row_magnitude, magnitude) + f.offset_magnitude;
+  return machine_epsilon(sums) * (roundings_before + f.terms()) * sums;
+}
+
+// What affine functions of a box are between: rows middle +- |rows| radius, exact but for rounding.
+Interval interval_image(const AffineRows& f, const Interval& x) {
   const Tensor middle = x.middle(), radius = x.radius();
-  const Tensor bound = times(f.rows, middle) + f.offset + times(f.rows.abs(), radius);
-  torch::NoGradGuard no_grad;
-  const Tensor magnitude = times(f.row_magnitude, middle.abs() + radius) + f.offset_magnitude;
-  return bound + machine_epsilon(bound) * f.terms() * magnitude;
+  const Tensor centre = times(f.rows, middle) + f.offset;
+  const Tensor reach = times(f.rows.abs(), radius) + margin(f, (middle.abs() + radius).detach(), 0);
+  return {centre - reach, centre + reach};
 }
 
 // relu(z) <= upper_slope z + intercept and relu(z) >= lower_slope z for z in an interval. [n, width] each.
@@ -123,14 +121,20 @@ class HiddenBounds {
  public:
   HiddenBounds(const QNetwork& q, const StateBox& box, BoundMethod method);
 
-  // Upper bounds of affine functions of the last hidden layer's activations, [n, k].
-  Tensor upper(const AffineRows& f) const;
+  // What affine functions of the last hidden layer's activations are between, [n, k].
+  Interval image(const AffineRows& f) const;
+
+  // Upper bounds of Q_a - Q_b, for all pairs ([n, a, b]) and against one reference action per sample ([n, a]).
+  Tensor all_differences(const AffineRows& q) const;
+  Tensor differences(const AffineRows& q, const Tensor& reference) const;
 
  private:
   bool linear_hidden() const { return method_ == BoundMethod::crown || method_ == BoundMethod::tightest; }
+  bool linear_outputs() const { return method_ != BoundMethod::ibp && !layers_.empty(); }
+  bool interval_outputs() const { return method_ == BoundMethod::tightest || !linear_outputs(); }
   void add_layer(const torch::nn::Linear& layer);
-  Interval bounds(const AffineRows& f) const;
-  Tensor linear_upper(const AffineRows& f) const;
+  Interval linear_image(const AffineRows& f) const;
+  Tensor linear_value(Tensor rows, Tensor offset) const;
 
   BoundMethod method_;
   Interval input_;        // after what stands before the first layer
@@ -150,7 +154,9 @@ HiddenBounds::HiddenBounds(const QNetwork& q, const StateBox& box, BoundMethod m
 
 void HiddenBounds::add_layer(const torch::nn::Linear& layer) {
   const AffineRows f = AffineRows::of(layer);
-  const Interval z = bounds(f);
+  Interval z = interval_image(f, activations_);
+  // Of the first layer's sums the intervals are exact.
+  if (linear_hidden() && !layers_.empty()) z = z.meet(linear_image(f));
   const Relaxation relaxation = Relaxation::over(z);
   {
     torch::NoGradGuard no_grad;
@@ -163,21 +169,10 @@ void HiddenBounds::add_layer(const torch::nn::Linear& layer) {
   activations_ = z.relu();
 }
 
-// What the next layer's sums are between.
-Interval HiddenBounds::bounds(const AffineRows& f) const {
-  const AffineRows both = f.with_negatives();
-  const long k = f.rows.size(-2);
-  const auto split = [k](const Tensor& upper) -> Interval { return {-upper.narrow(1, k, k), upper.narrow(1, 0, k)}; };
-  const Interval z = split(interval_upper(both, activations_));
-  // Of the first layer's sums the intervals are exact.
-  if (!linear_hidden() || layers_.empty()) return z;
-  return z.meet(split(linear_upper(both)));
-}
-
-Tensor HiddenBounds::upper(const AffineRows& f) const {
-  if (method_ == BoundMethod::ibp || layers_.empty()) return interval_upper(f, activations_);
-  const Tensor linear = linear_upper(f);
-  return method_ == BoundMethod::tightest ? torch::minimum(linear, interval_upper(f, activations_)) : linear;
+Interval HiddenBounds::image(const AffineRows& f) const {
+  if (!linear_outputs()) return interval_image(f, activations_);
+  const Interval linear = linear_image(f);
+  return interval_outputs() ? linear.meet(interval_image(f, activations_)) : linear;
 }
 
 // One layer down: what was `a` times the activations plus `d` becomes that in terms of the activations before.
@@ -200,14 +195,55 @@ void step_down(const Relaxation& relu, const torch::nn::Linear& layer, Tensor& a
   a = a.matmul(layer->weight);
 }
 
-Tensor HiddenBounds::linear_upper(const AffineRows& f) const {
-  Tensor a = f.rows.dim() == 2 ? f.rows.unsqueeze(0) : f.rows;  // [1 or n, k, width]
-  Tensor d = f.offset.dim() == 1 ? f.offset.unsqueeze(0) : f.offset;
+// The greatest value that linear bounds leave to affine functions of the last layer's activations, but for rounding.
+// Rows [k, width] with offset [k], or [n, k, width] with [n, k].
+Tensor HiddenBounds::linear_value(Tensor rows, Tensor offset) const {
+  Tensor a = rows.dim() == 2 ? rows.unsqueeze(0) : rows;
+  Tensor d = offset.dim() == 1 ? offset.unsqueeze(0) : offset;
   for (std::size_t i = layers_.size(); i-- > 0;) step_down(relaxations_[i], layers_[i], a, d);
-  const Tensor bound = d + times(a, input_.middle()) + times(a.abs(), input_.radius());
-  torch::NoGradGuard no_grad;
-  const Tensor magnitude = times(f.row_magnitude, magnitude_) + f.offset_magnitude;
-  return bound + machine_epsilon(bound) * (roundings_ + f.terms()) * magnitude;
+  return d + times(a, input_.middle()) + times(a.abs(), input_.radius());
+}
+
+Interval HiddenBounds::linear_image(const AffineRows& f) const {
+  const long k = f.rows.size(0);
+  // An upper bound of the negative is a lower bound.
+  const Tensor upper = linear_value(torch::cat({f.rows, -f.rows}), torch::cat({f.offset, -f.offset}));
+  const Tensor rounding = margin(f, magnitude_, roundings_);
+  return {-(upper.narrow(1, k, k) + rounding), upper.narrow(1, 0, k) + rounding};
+}
+
+Tensor HiddenBounds::all_differences(const AffineRows& q) const {
+  const long k = q.rows.size(0);
+  const auto pairs = [](const Tensor& a, const Tensor& b) { return (a.unsqueeze(1) + b).flatten(0, 1); };
+  const AffineRows f{pairs(q.rows, -q.rows), pairs(q.offset, -q.offset), pairs(q.row_magnitude, q.row_magnitude),
+                     pairs(q.offset_magnitude, q.offset_magnitude)};
+  Tensor upper;
+  if (linear_outputs()) upper = linear_value(f.rows, f.offset) + margin(f, magnitude_, roundings_);
+  if (interval_outputs()) {
+    const Tensor high = interval_image(f, activations_).high;
+    upper = upper.defined() ? torch::minimum(upper, high) : high;
+  }
+  return upper.view({-1, k, k});
+}
+
+Tensor HiddenBounds::differences(const AffineRows& q, const Tensor& reference) const {
+  const Tensor column = reference.unsqueeze(1);
+  Tensor upper;
+  if (linear_outputs()) {
+    const Tensor rows = q.rows - q.rows.index_select(0, reference).unsqueeze(1);
+    const Tensor offset = q.offset - q.offset.index_select(0, reference).unsqueeze(1);
+    const Tensor rounding = margin(q, magnitude_, roundings_);
+    upper = linear_value(rows, offset) + rounding + rounding.gather(1, column);
+  }
+  if (interval_outputs()) {
+    // With intervals all pairs cost less than rows that differ from sample to sample.
+    HiddenBounds intervals = *this;
+    intervals.method_ = BoundMethod::ibp;
+    const long k = q.rows.size(0);
+    const Tensor high = intervals.all_differences(q).gather(2, column.unsqueeze(2).expand({-1, k, 1})).squeeze(2);
+    upper = upper.defined() ? torch::minimum(upper, high) : high;
+  }
+  return upper;
 }
 
 std::string shape_text(const Tensor& t) {
@@ -232,12 +268,6 @@ void check(const QNetwork& q, const StateBox& box) {
     throw InputError("output bounds: a box with low above high or not a number, expected low <= high");
 }
 
-// Rows of the last layer for a and minus those for b: [.., actions, width] from two of them that broadcast.
-AffineRows difference(const AffineRows& a, const AffineRows& b) {
-  return {a.rows - b.rows, a.offset - b.offset, a.row_magnitude + b.row_magnitude,
-          a.offset_magnitude + b.offset_magnitude};
-}
-
 }  // namespace
 
 StateBox ball_around(const Tensor& states, double eps, StateRange range) {
@@ -253,9 +283,8 @@ StateBox ball_around(const Tensor& states, double eps, StateRange range) {
 
 OutputBounds output_bounds(const QNetwork& q, const StateBox& box, BoundMethod method) {
   check(q, box);
-  const Tensor upper = HiddenBounds(q, box, method).upper(AffineRows::of(q.layers().back()).with_negatives());
-  const long actions = q.shape().actions;
-  return {-upper.narrow(1, actions, actions), upper.narrow(1, 0, actions)};
+  const Interval q_range = HiddenBounds(q, box, method).image(AffineRows::of(q.layers().back()));
+  return {q_range.low, q_range.high};
 }
 
 Tensor difference_upper_bounds(const QNetwork& q, const StateBox& box, const Tensor& reference, BoundMethod method) {
@@ -263,25 +292,15 @@ Tensor difference_upper_bounds(const QNetwork& q, const StateBox& box, const Ten
   if (reference.dim() != 1 || reference.size(0) != box.low.size(0) || reference.scalar_type() != torch::kLong)
     throw InputError("difference bounds: reference actions of shape " + shape_text(reference) +
                      ", expected one int64 per box");
-  const AffineRows all = AffineRows::of(q.layers().back());
-  const auto chosen = [&reference](const Tensor& t) { return t.index_select(0, reference).unsqueeze(1); };
-  const AffineRows against{chosen(all.rows), chosen(all.offset), chosen(all.row_magnitude),
-                           chosen(all.offset_magnitude)};
-  const Tensor upper = HiddenBounds(q, box, method).upper(difference(all, against));
+  const Tensor upper = HiddenBounds(q, box, method).differences(AffineRows::of(q.layers().back()), reference);
   const Tensor itself = torch::zeros_like(upper, torch::kBool).scatter(1, reference.unsqueeze(1), true);
   return upper.masked_fill(itself, 0);
 }
 
 Tensor pairwise_difference_upper_bounds(const QNetwork& q, const StateBox& box, BoundMethod method) {
   check(q, box);
-  const AffineRows all = AffineRows::of(q.layers().back());
-  const auto first = [](const Tensor& t) { return t.unsqueeze(1); };
-  const AffineRows a{first(all.rows), first(all.offset), first(all.row_magnitude), first(all.offset_magnitude)};
-  AffineRows pairs = difference(a, all);
-  pairs = {pairs.rows.flatten(0, 1), pairs.offset.flatten(0, 1), pairs.row_magnitude.flatten(0, 1),
-           pairs.offset_magnitude.flatten(0, 1)};
+  const Tensor upper = HiddenBounds(q, box, method).all_differences(AffineRows::of(q.layers().back()));
   const long actions = q.shape().actions;
-  const Tensor upper = HiddenBounds(q, box, method).upper(pairs).view({-1, actions, actions});
   return upper.masked_fill(torch::eye(actions, upper.options()).to(torch::kBool), 0);
 }
 

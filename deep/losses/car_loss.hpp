@@ -12,8 +12,8 @@ enum class CarWeights {
 };
 
 struct CarLossOptions {
-  TdOptions td;  ///< Double DQN, as published
-  PerturbationRamp ramp;
+  TdOptions td{};  ///< Double DQN, as published
+  PerturbationRamp ramp{};
   /// Temperature of the soft maximum over the batch, in units of Q: towards 0 the largest error alone counts, towards
   /// infinity it is the mean.
   double lambda = 1;

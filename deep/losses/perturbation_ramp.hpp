@@ -18,7 +18,7 @@ struct PerturbationRamp {
   double eps = 0.1;             ///< the full radius, l-infinity
   double start = 0, end = 0.7;  ///< of the ramp, in fractions of training (SA-DQN: 4M of 6M frames)
   Shape shape = Shape::linear;
-  StateRange range;  ///< what states can be
+  StateRange range{};  ///< what states can be
 
   /// 0 up to `start`, 1 from `end` on.
   double share(const Progress& progress) const;

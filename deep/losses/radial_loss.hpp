@@ -12,8 +12,8 @@ enum class RadialOverlap {
 };
 
 struct RadialLossOptions {
-  TdOptions td;
-  PerturbationRamp ramp;
+  TdOptions td{};
+  PerturbationRamp ramp{};
   double kappa = 0.8;       ///< share of the temporal difference in the loss, at the full radius
   bool ramp_kappa = false;  ///< the share falls from 1 to kappa as the radius grows (first released code); paper: fixed
   BoundMethod bounds = BoundMethod::ibp;

@@ -8,13 +8,13 @@
 namespace maximin::deep {
 
 struct SaLossOptions {
-  TdOptions td;
-  PerturbationRamp ramp;
+  TdOptions td{};
+  PerturbationRamp ramp{};
   double kappa = 0.005;  ///< weight of the regulariser
   double margin = 1;     ///< c: no reward for a lead of the greedy action by more than this, in units of Q
   /// Bounds of the differences. Unset: beta CROWN-IBP + (1 - beta) IBP with beta = 1 - eps/eps_max, as in CROWN-IBP
   /// training, which begins with the narrow bounds and ends with those that train best.
-  std::optional<BoundMethod> bounds;
+  std::optional<BoundMethod> bounds{};
 };
 
 /// SA-DQN (Zhang et al. 2020, section 3.4): the Huber loss of the temporal difference plus

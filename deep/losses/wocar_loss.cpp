@@ -38,15 +38,19 @@ void WocarLoss::start_from(const QNetwork& q) {
   copy_targets();
 }
 
-torch::Tensor WocarLoss::reachable(const torch::Tensor& states, const QNetwork& online,
-                                   const Progress& progress) const {
+torch::Tensor WocarLoss::reachable(const torch::Tensor& states, QNetwork& online, const Progress& progress) const {
   torch::NoGradGuard no_grad;
   const double eps = options_.critic_eps.value_or(options_.ramp.eps_at(progress));
   const StateBox ball = ball_around(states, eps, options_.ramp.range);
-  const torch::Tensor leads = pairwise_difference_upper_bounds(online, ball, options_.reach_bounds);
-  if (!options_.reach_of_acting_values) return possibly_greedy(leads);
+  torch::Tensor values = online.forward(states);
+  if (options_.reach_of_acting_values) values = mix(values, critic_->forward(states));
+  const torch::Tensor greedy = values.argmax(1);
+  // What can be greedy somewhere leads there the action that is greedy at the state itself.
+  torch::Tensor leads = difference_upper_bounds(online, ball, greedy, options_.reach_bounds);
   // A mean of bounds bounds the mean.
-  return possibly_greedy(mix(leads, pairwise_difference_upper_bounds(*critic_, ball, options_.reach_bounds)));
+  if (options_.reach_of_acting_values)
+    leads = mix(leads, difference_upper_bounds(*critic_, ball, greedy, options_.reach_bounds));
+  return leads >= 0;
 }
 
 torch::Tensor WocarLoss::target_values(const Batch& batch, QNetwork& online, QNetwork& target) const {
@@ -58,8 +62,7 @@ torch::Tensor WocarLoss::target_values(const Batch& batch, QNetwork& online, QNe
   return batch.rewards + options_.td.discount * (1 - batch.terminal) * of_actions(values, chooser.argmax(1));
 }
 
-torch::Tensor WocarLoss::critic_target_values(const Batch& batch, const QNetwork& online,
-                                              const Progress& progress) const {
+torch::Tensor WocarLoss::critic_target_values(const Batch& batch, QNetwork& online, const Progress& progress) const {
   torch::NoGradGuard no_grad;
   const torch::Tensor reach = reachable(options_.reach_at_state ? batch.states : batch.next_states, online, progress);
   const QNetworkPtr& valuer = options_.critic_target_network ? critic_target_ : critic_;

@@ -40,8 +40,8 @@ enum class WocarRobustTerm {
 };
 
 struct WocarLossOptions {
-  TdOptions td;
-  PerturbationRamp ramp;
+  TdOptions td{};
+  PerturbationRamp ramp{};
   double worst_share = 0.05;  ///< xi of the acting values (1 - xi) Q + xi Q_w, .01 to .05 in the paper
   double kappa = 0.8;         ///< share of the temporal difference against the robust term, at the full radius
   bool ramp_kappa = true;     ///< the share falls from 1 to kappa as the radius grows, as released
@@ -51,7 +51,7 @@ struct WocarLossOptions {
   BoundMethod reach_bounds = BoundMethod::ibp;   ///< of which actions the attacker can bring about
   BoundMethod robust_bounds = BoundMethod::ibp;  ///< of the robust term
   /// The radius that the worst-case critic believes in at all times; unset: the ramp's. Released: 0.001.
-  std::optional<double> critic_eps;
+  std::optional<double> critic_eps{};
   /// Reachable actions are those of the acting values; else of Q alone, as released, though the agent acts by both.
   bool reach_of_acting_values = true;
   /// The critic's target takes the actions reachable at the state before instead of at the next one: a slip of the
@@ -88,12 +88,13 @@ class WocarLoss final : public Loss {
   QNetwork& critic() { return *critic_; }
   QNetwork& critic_target() { return *critic_target_; }
 
-  /// Actions that an attacker may bring about at these states, [b, actions], bool.
-  torch::Tensor reachable(const torch::Tensor& states, const QNetwork& online, const Progress& progress) const;
+  /// Actions that an attacker may bring about at these states, [b, actions], bool: those that the action which is
+  /// greedy at the state does not provably beat in all of the ball. None that can be brought about is missing.
+  torch::Tensor reachable(const torch::Tensor& states, QNetwork& online, const Progress& progress) const;
   /// y, [b], without gradient: the acting values choose the next action.
   torch::Tensor target_values(const Batch& batch, QNetwork& online, QNetwork& target) const;
   /// y_w, [b], without gradient.
-  torch::Tensor critic_target_values(const Batch& batch, const QNetwork& online, const Progress& progress) const;
+  torch::Tensor critic_target_values(const Batch& batch, QNetwork& online, const Progress& progress) const;
   /// The robust term, [b], given Q(s, .) ([b, actions]) and y ([b]).
   torch::Tensor robust_term(const Batch& batch, QNetwork& online, const torch::Tensor& values, const torch::Tensor& y,
                             const Progress& progress) const;
