@@ -26,10 +26,11 @@ std::string open_map(double height, const std::string& title, const std::string&
   return svg + svg_text(map_margin, 20, title, "title", squeeze);
 }
 
-std::string true_path(const MapFrame& f, const EpisodeTrace& trace, std::size_t steps) {
+/// Through the true positions of the first steps; with `end`, on to where the last one led.
+std::string true_path(const MapFrame& f, const EpisodeTrace& trace, std::size_t steps, bool end) {
   std::string d = "M" + f.place(trace.steps.front().truth);
   for (std::size_t k = 1; k < steps; ++k) d += "L" + f.place(trace.steps[k].truth);
-  if (steps == trace.steps.size()) d += "L" + f.place(trace.end);
+  if (end) d += "L" + f.place(trace.end);
   return fmt::format("<path class=\"halo\" d=\"{0}\"/><path class=\"path\" d=\"{0}\"/>\n", d);
 }
 
@@ -123,7 +124,7 @@ std::string path_picture(const EpisodeTrace& trace, const PathPictureOptions& op
     times += time_mark(f, corner_of(s.belief), fmt::format("{}", k));
   }
   if (!trace.steps.empty()) {
-    svg += true_path(f, trace, trace.steps.size());
+    svg += true_path(f, trace, trace.steps.size(), true);
     if (options.shown) svg += shown_positions(f, trace);
     svg += fmt::format("<circle class=\"start\" cx=\"{}\" cy=\"{}\" r=\"6.5\"/>",
                        svg_number(f.x(trace.steps[0].truth.x)), svg_number(f.y(trace.steps[0].truth.y)));
@@ -144,7 +145,7 @@ std::string moment_picture(const EpisodeTrace& trace, long step) {
                            trace.agent, trace.attack, step, s.truth.x, s.truth.y, s.shown.x, s.shown.y,
                            gridworld::moves[static_cast<std::size_t>(s.action)].name));
   svg += svg_map(f) + belief_marks(f, s.belief);
-  if (k > 0) svg += true_path(f, trace, k + 1 < trace.steps.size() ? k + 1 : k);
+  if (k > 0) svg += true_path(f, trace, k + 1, false);
   svg += ball_mark(f, s.truth, trace.eps) + svg_move(f, s.truth, s.action, next == s.truth) + truth_mark(f, s.truth);
   return svg + shown_mark(f, s.truth, s.shown) + "</svg>\n";
 }

@@ -7,7 +7,7 @@
 
 namespace maximin::report {
 
-std::string page(std::string_view title, std::string_view body) {
+std::string page(std::string_view title, std::string_view body, std::string_view further_style) {
   return fmt::format(R"(<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -15,7 +15,7 @@ std::string page(std::string_view title, std::string_view body) {
 <meta name="viewport" content="width=device-width, initial-scale=1"/>
 <meta name="color-scheme" content="light dark"/>
 <title>{}</title>
-<style>{}{}</style>
+<style>{}{}{}</style>
 </head>
 <body>
 <main>
@@ -23,7 +23,7 @@ std::string page(std::string_view title, std::string_view body) {
 </body>
 </html>
 )",
-                     escape(title), page_style(), plot_style(), body);
+                     escape(title), page_style(), plot_style(), further_style, body);
 }
 
 std::string verdict_box(std::string_view kind, const std::vector<std::string>& sentences) {

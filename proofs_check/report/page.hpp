@@ -10,8 +10,9 @@
 /// The parts that every report has.
 namespace maximin::report {
 
-/// The whole document around `body`, with the style sheet inside. `title` is plain text.
-std::string page(std::string_view title, std::string_view body);
+/// The whole document around `body`, with the style sheet inside. `title` is plain text; `further_style` is CSS that a
+/// page needs besides.
+std::string page(std::string_view title, std::string_view body, std::string_view further_style = "");
 
 /// The box with the verdict. `kind` is "", "bad" or "warn"; sentences are HTML, the first one large.
 std::string verdict_box(std::string_view kind, const std::vector<std::string>& sentences);

@@ -179,6 +179,13 @@ void Plot::line(const std::vector<Mark>& points, std::size_t series) {
   if (!d.empty()) body_ += fmt::format("<path class=\"line s{}\" d=\"{}\"/>\n", series % series_count, d);
 }
 
+void Plot::band(const std::vector<Mark>& low, const std::vector<Mark>& high, std::size_t series) {
+  std::string d;
+  for (const Mark& p : high) d += (d.empty() ? "M" : "L") + place(px(p.x), py(p.y));
+  for (auto p = low.rbegin(); p != low.rend(); ++p) d += "L" + place(px(p->x), py(p->y));
+  if (!d.empty()) body_ += fmt::format("<path class=\"band s{}\" d=\"{}z\"/>\n", series % series_count, d);
+}
+
 void Plot::stairs(const std::vector<Mark>& points, std::size_t series) {
   std::string d;
   for (const Mark& p : points) {

@@ -55,6 +55,8 @@ class Plot {
   void specks(const std::vector<Mark>& marks, Role role);
   /// Straight lines through the points. `series` picks colour and dash, from 0.
   void line(const std::vector<Mark>& points, std::size_t series);
+  /// The area between two lines that have their x in common, in the colour of `series`. As long as each other.
+  void band(const std::vector<Mark>& low, const std::vector<Mark>& high, std::size_t series);
   /// A rising staircase: from each point level to the next x, then upright.
   void stairs(const std::vector<Mark>& points, std::size_t series);
 
