@@ -131,6 +131,8 @@ PfRnn::PfRnn(const PfRnnOptions& options, Stream& rng) : options_(options) {
   torch::NoGradGuard no_grad;
   // A forget gate that starts open remembers from the first update on.
   if (lstm) from_input_->bias.narrow(0, 0, h).add_(1);
+  // Candidates that start with little noise let the means be learned first.
+  from_input_->bias.narrow(0, (lstm ? 4 : 3) * h, h).sub_(3);
 }
 
 long PfRnn::feature_count() const {

@@ -32,10 +32,10 @@ int main(int argc, char** argv) {
     traces.push_back(sample::episode(kind, 1.0, 24, 17));
   }
   write_results(folder / "table.json", table);
-  write_whole_file(folder / "table.md", markdown(table));
-  write_whole_file(folder / "table.html", results_page(table, curves, traces));
+  write_file(folder / "table.md", markdown(table), Overwrite::replace);
+  write_file(folder / "table.html", results_page(table, curves, traces), Overwrite::replace);
   write_trace(folder / "episode.json", traces[2]);
-  write_whole_file(folder / "episode.svg", animated_svg(traces[2]));
-  write_whole_file(folder / "particles.svg", animated_svg(traces[5]));
-  write_whole_file(folder / "path.svg", standalone_svg(path_picture(traces[2], {moments(traces[2], 4), true, ""})));
+  write_file(folder / "episode.svg", animated_svg(traces[2]), Overwrite::replace);
+  write_file(folder / "particles.svg", animated_svg(traces[5]), Overwrite::replace);
+  write_file(folder / "path.svg", standalone_svg(path_picture(traces[2], {moments(traces[2], 4), true, ""})), Overwrite::replace);
 }
