@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include <maximin/deep/agent_spec.hpp>
 #include <maximin/deep/belief_agent.hpp>
@@ -34,6 +35,9 @@ struct Acting {
   double random_actions = 0;
 };
 Acting acting_of(const AgentSpec& spec);
+
+/// The belief model of that name, of radius eps. Throws InputError where it is a particle filter and there is none.
+std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const PfRnnPtr& particle_filter);
 
 /// An agent out of its parts, for episodes in step.
 std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Acting& acting);

@@ -6,12 +6,14 @@
 #include <maximin/deep/report/results_file.hpp>
 #include <maximin/deep/report/results_page.hpp>
 #include <maximin/deep/report/results_text.hpp>
+#include <maximin/models/files/output_file.hpp>
 
 #include "sample.hpp"
 
 /// deep_report_example FOLDER: writes what the deep layer shows, with real episodes and made-up numbers, to look at.
 int main(int argc, char** argv) {
   using namespace maximin::deep;
+  using maximin::Overwrite, maximin::write_file;
   if (argc != 2) {
     std::cerr << "usage: deep_report_example FOLDER\n";
     return 2;

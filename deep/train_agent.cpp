@@ -1,0 +1,163 @@
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <maximin/deep/attacks/training_attack.hpp>
+#include <maximin/deep/pf_rnn_training.hpp>
+#include <maximin/deep/tensor_file.hpp>
+#include <maximin/deep/trained_agent.hpp>
+#include <maximin/theory/error.hpp>
+
+namespace maximin::deep {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// The agent of that file, if there is one and it is of this specification.
+std::optional<TrainedAgent> finished(const AgentSpec& spec, const fs::path& path) {
+  if (!fs::exists(path)) return std::nullopt;
+  TrainedAgent agent = read_agent(path);
+  if (to_json(agent.spec) == to_json(spec)) return agent;
+  throw InputError(fmt::format("{}: an agent of another specification, expected to find it as it would be trained now; "
+                               "remove it or train in another folder",
+                               path.string()));
+}
+
+/// A particle filter for the belief, trained from scratch: it takes minutes, and the same seed gives the same filter, so
+/// that no checkpoint is kept. Nothing where the hook stopped it.
+bool train_particle_filter(TrainedAgent& agent, bool quick, const TrainingHooks& hooks) {
+  PfRnnOptions shape;
+  shape.cell = agent.spec.belief == "pf-gru" ? PfCell::gru : PfCell::lstm;
+  shape.eps = agent.spec.eps;
+  PfTrainingOptions options;
+  options.seed = agent.spec.training.seed;
+  if (quick) options.updates = 200;
+  const Stopwatch watch;
+  Stream weights(options.seed, (std::uint64_t{1} << 62U) + 2);
+  agent.particle_filter = std::make_shared<PfRnn>(shape, weights);
+  const long frames_per_update = options.batch * options.window;
+  if (hooks.begin) hooks.begin("belief model of " + agent.spec.name(), options.updates * frames_per_update);
+  bool stopped = false;
+  train_pf_rnn(*agent.particle_filter, options, [&](const PfTrainingProgress& progress) {
+    if (progress.update % 20 != 0 || !hooks.stretch) return true;
+    CurvePoint point;
+    point.frames = progress.update * frames_per_update;
+    point.mean_return = point.exploration = std::nan("");
+    point.loss = progress.loss;
+    stopped = !hooks.stretch(point);
+    return !stopped;
+  });
+  agent.belief_seconds = watch.seconds();
+  return !stopped;
+}
+
+struct Files {
+  fs::path agent, log, checkpoint;
+  Files(const fs::path& folder, const std::string& name)
+      : agent(folder / (name + ".agent")), log(folder / (name + ".csv")), checkpoint(folder / (name + ".training")) {}
+};
+
+/// Continues a training from its checkpoint. Returns the seconds that it took so far.
+double resume(const fs::path& path, const AgentSpec& spec, TrainedAgent& agent, Trainer& trainer) {
+  const TensorFile file = read_tensor_file(path, "training");
+  try {
+    if (file.about.at("specification") != to_json(spec)) {
+      throw InputError("a training of another specification, expected the same; remove it or train in another folder");
+    }
+    trainer.load(file);
+    agent.belief_seconds = file.about.at("belief_seconds").get<double>();
+    return file.about.at("training_seconds").get<double>();
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}", path.string(), e.what()));
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(fmt::format("{}: no checkpoint, expected specification and seconds", path.string()));
+  }
+}
+
+void write_checkpoint(const fs::path& path, const TrainedAgent& agent, const Trainer& trainer, double seconds) {
+  TensorFile file{"training", {}, {}};
+  file.about["specification"] = to_json(agent.spec);
+  file.about["belief_seconds"] = agent.belief_seconds;
+  file.about["training_seconds"] = seconds;
+  trainer.save(file);
+  write_tensor_file(path, file);
+}
+
+/// Where the weights come from that a training begins with.
+bool prepare(TrainedAgent& agent, const fs::path& folder, torch::Device device, bool quick,
+             const TrainingHooks& hooks) {
+  const AgentSpec& spec = agent.spec;
+  if (!spec.start_from.empty()) {
+    AgentSpec first = recipe(spec.start_from, spec.eps, spec.training.seed, quick);
+    first.network = spec.network;
+    first.training.reward_scale = spec.training.reward_scale;
+    const auto start = train_agent(first, folder, device, quick, hooks);
+    if (!start) return false;
+    agent.q->copy_from(*start->q);
+  }
+  return !spec.belief.starts_with("pf-") || train_particle_filter(agent, quick, hooks);
+}
+
+}  // namespace
+
+std::vector<std::string> training_columns() {
+  return {"frames", "updates", "episodes", "return", "loss", "exploration", "truth in belief", "belief size"};
+}
+
+std::vector<std::optional<double>> training_row(const CurvePoint& p) {
+  const auto number = [](double v) { return std::isfinite(v) ? std::optional<double>(v) : std::nullopt; };
+  return {static_cast<double>(p.frames), static_cast<double>(p.updates), static_cast<double>(p.episodes),
+          number(p.mean_return),         number(p.loss),                 number(p.exploration),
+          number(p.believed),            number(p.belief_size)};
+}
+
+std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& folder, torch::Device device, bool quick,
+                                        const TrainingHooks& hooks) {
+  const Files files(folder, spec.name());
+  if (auto done = finished(spec, files.agent)) return done;
+  fs::create_directories(folder);
+  TrainedAgent agent = untrained(spec);
+  if (!prepare(agent, folder, device, quick, hooks)) return std::nullopt;
+
+  TrainingParts parts;
+  parts.online = agent.q;
+  Acting acting = acting_of(spec);
+  acting.belief_states = spec.training_belief_states;
+  parts.belief = make_belief(acting, spec.eps, agent.particle_filter);
+  parts.aggregator = aggregator_named(spec.aggregator);
+  parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values(), *agent.q);
+  parts.loss = agent.loss;
+  parts.device = device;
+  Trainer trainer(spec.training, parts);
+  double before = 0;
+  if (fs::exists(files.checkpoint)) before = resume(files.checkpoint, spec, agent, trainer);
+  const Stopwatch watch;
+  TrainingLogWriter log(files.log, training_columns(), static_cast<double>(trainer.frames()));
+  if (hooks.begin) hooks.begin(spec.name(), spec.training.frames);
+  while (!trainer.done()) {
+    const CurvePoint point = trainer.stretch();
+    log.append(training_row(point));
+    const bool go_on = !hooks.stretch || hooks.stretch(point);
+    if (!trainer.done()) write_checkpoint(files.checkpoint, agent, trainer, before + watch.seconds());
+    if (!go_on && !trainer.done()) return std::nullopt;
+  }
+  agent.training_seconds = before + watch.seconds();
+  agent.q->to(torch::kCPU);
+  write_agent(files.agent, agent);
+  std::error_code ignored;
+  fs::remove(files.checkpoint, ignored);
+  return agent;
+}
+
+}  // namespace maximin::deep

@@ -1,0 +1,128 @@
+#include <maximin/deep/trained_agent.hpp>
+
+#include <cstring>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <maximin/deep/losses/car_loss.hpp>
+#include <maximin/deep/losses/radial_loss.hpp>
+#include <maximin/deep/losses/sa_loss.hpp>
+#include <maximin/deep/losses/td_loss.hpp>
+#include <maximin/deep/losses/wocar_loss.hpp>
+#include <maximin/deep/pf_rnn_belief.hpp>
+#include <maximin/deep/pf_rnn_file.hpp>
+#include <maximin/deep/set_beliefs.hpp>
+#include <maximin/deep/tensor_file.hpp>
+#include <maximin/theory/error.hpp>
+
+namespace maximin::deep {
+namespace {
+
+// Networks begin with weights from streams of their own, which no episode draws from.
+Stream weights_stream(std::uint64_t seed, std::uint64_t which) {
+  return Stream(seed, (std::uint64_t{1} << 62U) + which);
+}
+
+template <class Options>
+Options baseline_options(const AgentSpec& spec) {
+  Options o;
+  o.td.discount = spec.discount;
+  o.td.double_q = spec.double_q;
+  o.ramp.eps = spec.eps;
+  return o;
+}
+
+std::shared_ptr<Loss> make_loss(const AgentSpec& spec) {
+  if (spec.loss == "sa") return std::make_shared<SaLoss>(baseline_options<SaLossOptions>(spec));
+  if (spec.loss == "radial") return std::make_shared<RadialLoss>(baseline_options<RadialLossOptions>(spec));
+  if (spec.loss == "car") return std::make_shared<CarLoss>(baseline_options<CarLossOptions>(spec));
+  if (spec.loss == "wocar") {
+    Stream rng = weights_stream(spec.training.seed, 1);
+    return std::make_shared<WocarLoss>(baseline_options<WocarLossOptions>(spec), spec.network, rng);
+  }
+  TdLossOptions o;
+  o.discount = spec.discount;
+  o.aggregator = aggregator_named(spec.aggregator);
+  o.double_q = spec.double_q;
+  if (spec.target_order == "aggregate-of-max") o.order = TargetOrder::aggregate_of_max;
+  return std::make_shared<TdLoss>(o);
+}
+
+torch::Tensor bytes_tensor(const std::string& bytes) {
+  torch::Tensor copy = torch::empty({static_cast<long>(bytes.size())}, torch::kByte);
+  std::memcpy(copy.data_ptr(), bytes.data(), bytes.size());
+  return copy;
+}
+
+std::string tensor_bytes(const torch::Tensor& t) {
+  return {static_cast<const char*>(t.data_ptr()), t.nbytes()};
+}
+
+}  // namespace
+
+Acting acting_of(const AgentSpec& spec) {
+  return {spec.belief, spec.belief_states, spec.aggregator, spec.random_actions};
+}
+
+std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const PfRnnPtr& particle_filter) {
+  const ObservationBall ball(eps);
+  if (acting.belief == "observed") return std::make_shared<ObservedState>();
+  if (acting.belief == "ball") return std::make_shared<SetBeliefs>(SetBelief::ball, ball, acting.belief_states);
+  if (acting.belief == "exact") return std::make_shared<SetBeliefs>(SetBelief::exact, ball, acting.belief_states);
+  if (!particle_filter) throw InputError(fmt::format("belief: {}, expected an agent with a particle filter", acting.belief));
+  return std::make_shared<PfRnnBelief>(particle_filter);
+}
+
+std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Acting& acting) {
+  return std::make_unique<BeliefAgent>(trained.values(), make_belief(acting, trained.spec.eps, trained.particle_filter),
+                                       aggregator_named(acting.aggregator), acting.random_actions);
+}
+
+TrainedAgent untrained(const AgentSpec& spec) {
+  Stream rng = weights_stream(spec.training.seed, 0);
+  return {spec, std::make_shared<QNetwork>(spec.network, rng), make_loss(spec), nullptr};
+}
+
+void write_agent(const std::filesystem::path& path, const TrainedAgent& agent) {
+  TensorFile file{"agent", {}, {}};
+  file.about["specification"] = to_json(agent.spec);
+  file.about["training_seconds"] = agent.training_seconds;
+  file.about["belief_seconds"] = agent.belief_seconds;
+  put_module(file, "q", *agent.q);
+  const auto modules = agent.loss->modules();
+  for (std::size_t i = 0; i < modules.size(); ++i) put_module(file, fmt::format("loss{}", i), *modules[i]);
+  if (agent.particle_filter) {
+    std::ostringstream bytes;
+    save_pf_rnn(bytes, *agent.particle_filter);
+    file.tensors["particle_filter"] = bytes_tensor(bytes.str());
+  }
+  write_tensor_file(path, file);
+}
+
+TrainedAgent read_agent(const std::filesystem::path& path) {
+  const TensorFile file = read_tensor_file(path, "agent");
+  if (!file.about.contains("specification")) {
+    throw InputError(fmt::format("{}: no specification, expected an agent", path.string()));
+  }
+  AgentSpec spec;
+  merge_json(spec, file.about["specification"], path.string());
+  TrainedAgent agent = untrained(spec);
+  try {
+    get_module(file, "q", *agent.q);
+    const auto modules = agent.loss->modules();
+    for (std::size_t i = 0; i < modules.size(); ++i) get_module(file, fmt::format("loss{}", i), *modules[i]);
+    if (spec.belief.starts_with("pf-")) {
+      std::istringstream bytes(tensor_bytes(file.at("particle_filter")));
+      agent.particle_filter = load_pf_rnn(bytes, "particle_filter");
+    }
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}", path.string(), e.what()));
+  }
+  agent.training_seconds = file.about.value("training_seconds", 0.0);
+  agent.belief_seconds = file.about.value("belief_seconds", 0.0);
+  return agent;
+}
+
+}  // namespace maximin::deep
