@@ -32,12 +32,13 @@ struct Carry {
   int least, most;
 };
 
-/// The squares that the world is cut into.
+/// The squares that the world is cut into. A coordinate or a displacement times their number in a unit is exact in
+/// double precision, as a multiple of the quantum times a whole number below 2^9 is.
 class Squares {
  public:
-  Squares(double eps, int per_move) : per_cell_(2 * per_move), side_(0.5 / per_move) {
-    // A closed interval of n squares' length touches n + 1 of them, any other one more than its length rounded up.
-    window_ = static_cast<int>(std::floor(2 * eps / side_ - 1e-9)) + 2;
+  Squares(double eps, int per_move) : per_cell_(2 * per_move) {
+    // A closed interval as long as n squares touches n + 1 of them, if its ends are edges.
+    window_ = static_cast<int>(std::ceil(2 * eps * per_cell_)) + 1;
     const int n = per_axis();
     kinds_.resize(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
     for (int j = 0; j < n; ++j) {
@@ -48,7 +49,7 @@ class Squares {
   int per_axis() const { return gridworld::side * per_cell_; }
   /// The most squares, in a row, that an observation leaves possible.
   int window() const { return window_; }
-  int of(double coordinate) const { return static_cast<int>(std::floor(coordinate / side_)); }
+  int of(double coordinate) const { return static_cast<int>(std::floor(coordinate * per_cell_)); }
 
   Cell kind(int i, int j) const {
     if (i < 0 || j < 0 || i >= per_axis() || j >= per_axis()) return Cell::wall;
@@ -56,10 +57,9 @@ class Squares {
   }
 
   Carry carry(double displacement) const {
-    const double squares = displacement / side_, whole = std::round(squares);
-    if (std::abs(squares - whole) < 1e-9) return {static_cast<int>(whole), static_cast<int>(whole)};
+    const double squares = displacement * per_cell_;
     const int least = static_cast<int>(std::floor(squares));
-    return {least, least + 1};
+    return {least, static_cast<int>(std::ceil(squares))};
   }
 
   /// The smallest rectangle around the open squares of another; empty if there are none.
@@ -81,7 +81,6 @@ class Squares {
   }
 
   int per_cell_, window_;
-  double side_;
   std::vector<Cell> kinds_;
 };
 
