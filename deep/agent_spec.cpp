@@ -1,6 +1,7 @@
 #include <maximin/deep/agent_spec.hpp>
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -79,7 +80,7 @@ void visit_fields(AgentSpec& o, Visitor& visit) {
 
 template <class T>
 concept HasFields = std::is_same_v<T, AgentSpec> || std::is_same_v<T, TrainOptions> ||
-                    std::is_same_v<T, QNetworkShape> || std::is_same_v<T, ReplayOptions>;
+    std::is_same_v<T, QNetworkShape> || std::is_same_v<T, ReplayOptions>;
 
 struct Writer {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
@@ -141,11 +142,9 @@ class Reader {
   template <class T>
   static bool fits(const nlohmann::ordered_json& value) {
     if constexpr (std::is_same_v<T, bool>) return value.is_boolean();
-    if constexpr (std::is_unsigned_v<T>) return value.is_number_unsigned();
-    if constexpr (std::is_integral_v<T>) {
-      if (!value.is_number_integer()) return false;
-      const auto n = value.get<long>();
-      return n >= std::numeric_limits<T>::min() && n <= std::numeric_limits<T>::max();
+    if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+      if (value.is_number_unsigned()) return std::in_range<T>(value.get<std::uint64_t>());
+      return value.is_number_integer() && std::in_range<T>(value.get<std::int64_t>());
     }
     if constexpr (std::is_floating_point_v<T>) return value.is_number();
     if constexpr (std::is_same_v<T, std::string>) return value.is_string();

@@ -18,7 +18,7 @@ struct AgentSpec {
   std::string kind = "dqn";  ///< for people and for tables
   double eps = 0.1;          ///< radius of the ball that it is trained to withstand and believes in
   QNetworkShape network;
-  std::string loss = "td";         ///< td, sa, wocar, radial, car
+  std::string loss = "td";          ///< td, sa, wocar, radial, car
   std::string belief = "observed";  ///< observed, ball, exact, pf-lstm, pf-gru
   long belief_states = 1;           ///< K of set beliefs when acting
   long training_belief_states = 1;  ///< and in the replay memory

@@ -90,7 +90,6 @@ struct Relaxation {
   }
 };
 
-// All that is known of the hidden layers of one network over the boxes of a batch.
 // What stands before the first layer, over a box. Rounding is monotone, so the ends of the box go through the very
 // operations that its points go through; sines and cosines are 1 or -1 where the interval passes a crest or a trough,
 // else what they are at its ends, widened by the rounding of the angle and of the function.
@@ -117,6 +116,7 @@ Interval feature_interval(const QNetwork& q, const StateBox& box) {
   return out;
 }
 
+// All that is known of the hidden layers of one network over the boxes of a batch.
 class HiddenBounds {
  public:
   HiddenBounds(const QNetwork& q, const StateBox& box, BoundMethod method);

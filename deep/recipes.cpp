@@ -48,6 +48,7 @@ AgentSpec belief_pessimistic(std::uint64_t seed, const char* belief) {
 
 AgentSpec robust_baseline(std::uint64_t seed, const char* loss) {
   AgentSpec s = vanilla(seed);
+  continue_from_vanilla(s);
   s.loss = loss;
   return s;
 }
@@ -72,8 +73,8 @@ AgentSpec full_recipe(std::string_view kind, std::uint64_t seed) {
 }  // namespace
 
 const std::vector<std::string>& agent_kinds() {
-  static const std::vector<std::string> kinds{"dqn",        "sa-dqn",  "wocar-dqn", "radial-dqn",  "car-dqn",
-                                              "bp-dqn",     "bp-dqn-lstm", "bp-dqn-gru", "bp-dqn-noisy"};
+  static const std::vector<std::string> kinds{"dqn",    "sa-dqn",      "wocar-dqn",  "radial-dqn",  "car-dqn",
+                                              "bp-dqn", "bp-dqn-lstm", "bp-dqn-gru", "bp-dqn-noisy"};
   return kinds;
 }
 

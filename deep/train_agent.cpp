@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <maximin/deep/attacks/training_attack.hpp>
+#include <maximin/deep/losses/wocar_loss.hpp>
 #include <maximin/deep/pf_rnn_training.hpp>
 #include <maximin/deep/tensor_file.hpp>
 #include <maximin/deep/trained_agent.hpp>
@@ -29,13 +30,14 @@ std::optional<TrainedAgent> finished(const AgentSpec& spec, const fs::path& path
   if (!fs::exists(path)) return std::nullopt;
   TrainedAgent agent = read_agent(path);
   if (to_json(agent.spec) == to_json(spec)) return agent;
-  throw InputError(fmt::format("{}: an agent of another specification, expected to find it as it would be trained now; "
-                               "remove it or train in another folder",
-                               path.string()));
+  throw InputError(
+      fmt::format("{}: an agent of another specification, expected to find it as it would be trained now; "
+                  "remove it or train in another folder",
+                  path.string()));
 }
 
-/// A particle filter for the belief, trained from scratch: it takes minutes, and the same seed gives the same filter, so
-/// that no checkpoint is kept. Nothing where the hook stopped it.
+/// A particle filter for the belief, trained from scratch: it takes minutes, and the same seed gives the same filter,
+/// so that no checkpoint is kept. Nothing where the hook stopped it.
 bool train_particle_filter(TrainedAgent& agent, bool quick, const TrainingHooks& hooks) {
   PfRnnOptions shape;
   shape.cell = agent.spec.belief == "pf-gru" ? PfCell::gru : PfCell::lstm;
@@ -105,6 +107,7 @@ bool prepare(TrainedAgent& agent, const fs::path& folder, torch::Device device, 
     const auto start = train_agent(first, folder, device, quick, hooks);
     if (!start) return false;
     agent.q->copy_from(*start->q);
+    if (auto* wocar = dynamic_cast<WocarLoss*>(agent.loss.get())) wocar->start_from(*start->q);
   }
   return !spec.belief.starts_with("pf-") || train_particle_filter(agent, quick, hooks);
 }
@@ -117,9 +120,14 @@ std::vector<std::string> training_columns() {
 
 std::vector<std::optional<double>> training_row(const CurvePoint& p) {
   const auto number = [](double v) { return std::isfinite(v) ? std::optional<double>(v) : std::nullopt; };
-  return {static_cast<double>(p.frames), static_cast<double>(p.updates), static_cast<double>(p.episodes),
-          number(p.mean_return),         number(p.loss),                 number(p.exploration),
-          number(p.believed),            number(p.belief_size)};
+  return {static_cast<double>(p.frames),
+          static_cast<double>(p.updates),
+          static_cast<double>(p.episodes),
+          number(p.mean_return),
+          number(p.loss),
+          number(p.exploration),
+          number(p.believed),
+          number(p.belief_size)};
 }
 
 std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& folder, torch::Device device, bool quick,

@@ -25,6 +25,8 @@ Stream weights_stream(std::uint64_t seed, std::uint64_t which) {
   return Stream(seed, (std::uint64_t{1} << 62U) + which);
 }
 
+/// The published losses, with bounds as narrow as there are: with intervals alone Radial-DQN and WocaR-DQN unlearn the
+/// Gridworld.
 template <class Options>
 Options baseline_options(const AgentSpec& spec) {
   Options o;
@@ -36,11 +38,22 @@ Options baseline_options(const AgentSpec& spec) {
 
 std::shared_ptr<Loss> make_loss(const AgentSpec& spec) {
   if (spec.loss == "sa") return std::make_shared<SaLoss>(baseline_options<SaLossOptions>(spec));
-  if (spec.loss == "radial") return std::make_shared<RadialLoss>(baseline_options<RadialLossOptions>(spec));
-  if (spec.loss == "car") return std::make_shared<CarLoss>(baseline_options<CarLossOptions>(spec));
+  if (spec.loss == "radial") {
+    auto o = baseline_options<RadialLossOptions>(spec);
+    o.bounds = BoundMethod::crown;
+    o.overlap = RadialOverlap::merged_difference;
+    return std::make_shared<RadialLoss>(o);
+  }
+  if (spec.loss == "car") {
+    auto o = baseline_options<CarLossOptions>(spec);
+    o.bounds = BoundMethod::crown;
+    return std::make_shared<CarLoss>(o);
+  }
   if (spec.loss == "wocar") {
+    auto o = baseline_options<WocarLossOptions>(spec);
+    o.reach_bounds = o.robust_bounds = BoundMethod::crown;
     Stream rng = weights_stream(spec.training.seed, 1);
-    return std::make_shared<WocarLoss>(baseline_options<WocarLossOptions>(spec), spec.network, rng);
+    return std::make_shared<WocarLoss>(o, spec.network, rng);
   }
   TdLossOptions o;
   o.discount = spec.discount;
@@ -71,7 +84,8 @@ std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const 
   if (acting.belief == "observed") return std::make_shared<ObservedState>();
   if (acting.belief == "ball") return std::make_shared<SetBeliefs>(SetBelief::ball, ball, acting.belief_states);
   if (acting.belief == "exact") return std::make_shared<SetBeliefs>(SetBelief::exact, ball, acting.belief_states);
-  if (!particle_filter) throw InputError(fmt::format("belief: {}, expected an agent with a particle filter", acting.belief));
+  if (!particle_filter)
+    throw InputError(fmt::format("belief: {}, expected an agent with a particle filter", acting.belief));
   return std::make_shared<PfRnnBelief>(particle_filter);
 }
 

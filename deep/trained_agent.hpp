@@ -17,11 +17,11 @@ namespace maximin::deep {
 /// Networks with what they are: enough to act.
 struct TrainedAgent {
   AgentSpec spec;
-  QNetworkPtr q;                 ///< what was trained
-  std::shared_ptr<Loss> loss;    ///< with further networks, if it owns any
-  PfRnnPtr particle_filter;      ///< where the belief is one, else empty
-  double training_seconds = 0;   ///< of this part of the pipeline
-  double belief_seconds = 0;     ///< of the particle filter's training
+  QNetworkPtr q;                ///< what was trained
+  std::shared_ptr<Loss> loss;   ///< with further networks, if it owns any
+  PfRnnPtr particle_filter;     ///< where the belief is one, else empty
+  double training_seconds = 0;  ///< of this part of the pipeline
+  double belief_seconds = 0;    ///< of the particle filter's training
 
   /// What it acts by, and what attacks differentiate: in units of training rewards, reward_scale times rewards.
   std::shared_ptr<ActionValueModule> values() const { return loss->acting(q); }
@@ -51,7 +51,8 @@ TrainedAgent read_agent(const std::filesystem::path& path);
 
 /// What is told while an agent is trained. `stretch` returns false to stop.
 struct TrainingHooks {
-  std::function<void(const std::string& part, long frames)> begin;  ///< a part of the pipeline begins, of so many frames
+  std::function<void(const std::string& part, long frames)>
+      begin;  ///< a part of the pipeline begins, of so many frames
   std::function<bool(const CurvePoint& point)> stretch;
 };
 
@@ -60,11 +61,11 @@ std::vector<std::string> training_columns();
 std::vector<std::optional<double>> training_row(const CurvePoint& point);
 
 /// Trains the agent in `folder`, where files stand by AgentSpec::name(): NAME.agent when done, NAME.csv the curve,
-/// NAME.training the checkpoint of a training under way, which a later call continues bit for bit. What the agent begins
-/// with (a vanilla DQN of the same seed, a particle filter) is trained first where it is not there. Returns the agent,
-/// from its file where it is there already; nothing where a hook stopped it. Throws InputError when a file there is of
-/// another specification.
-std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const std::filesystem::path& folder, torch::Device device,
-                                        bool quick, const TrainingHooks& hooks);
+/// NAME.training the checkpoint of a training under way, which a later call continues bit for bit. What the agent
+/// begins with (a vanilla DQN of the same seed, a particle filter) is trained first where it is not there. Returns the
+/// agent, from its file where it is there already; nothing where a hook stopped it. Throws InputError when a file there
+/// is of another specification.
+std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const std::filesystem::path& folder,
+                                        torch::Device device, bool quick, const TrainingHooks& hooks);
 
 }  // namespace maximin::deep

@@ -1,0 +1,148 @@
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/interrupt.hpp>
+#include <maximin/apps/common/json_output.hpp>
+#include <maximin/apps/common/option_checks.hpp>
+#include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/table.hpp>
+#include <maximin/apps/maximin_deep/commands.hpp>
+#include <maximin/apps/maximin_deep/device.hpp>
+#include <maximin/apps/maximin_deep/workers.hpp>
+#include <maximin/deep/trained_agent.hpp>
+#include <maximin/theory/error.hpp>
+
+namespace maximin::apps {
+
+namespace {
+
+struct TrainCommand {
+  std::vector<std::string> kinds;
+  double eps = 0.1;
+  std::uint64_t seed = 1;
+  int seeds = 1;
+  std::filesystem::path folder = "runs";
+  std::filesystem::path config;
+  std::string device = "cpu";
+  int jobs = 1;
+  bool quick = false, print_config = false, json = false;
+};
+
+nlohmann::ordered_json read_config(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  if (!in) throw InputError(path.string() + ": cannot be read, expected a JSON file");
+  try {
+    return nlohmann::ordered_json::parse(in, nullptr, true, true);
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(path.string() + ": no JSON: " + e.what());
+  }
+}
+
+/// What is to be trained, vanilla agents first: others begin with them.
+std::vector<deep::AgentSpec> planned(const TrainCommand& command) {
+  std::vector<deep::AgentSpec> specs;
+  std::set<std::string> names;
+  const auto add = [&](const deep::AgentSpec& spec) {
+    if (names.insert(spec.name()).second) specs.push_back(spec);
+  };
+  const bool configured = !command.config.empty();
+  const nlohmann::ordered_json config = configured ? read_config(command.config) : nlohmann::ordered_json::object();
+  for (int k = 0; k < command.seeds; ++k) {
+    for (const std::string& kind : command.kinds) {
+      deep::AgentSpec spec =
+          deep::recipe(kind, command.eps, command.seed + static_cast<std::uint64_t>(k), command.quick);
+      deep::merge_json(spec, config, configured ? command.config.string() : "configuration");
+      add(spec);
+    }
+  }
+  std::stable_partition(specs.begin(), specs.end(), [](const deep::AgentSpec& s) { return s.start_from.empty(); });
+  return specs;
+}
+
+int train(const TrainCommand& command) {
+  const std::vector<deep::AgentSpec> specs = planned(command);
+  if (command.print_config) {
+    Json all = Json::array();
+    for (const deep::AgentSpec& spec : specs) all.push_back(deep::to_json(spec));
+    print(json_text(specs.size() == 1 ? all[0] : Json{{"agents", all}}));
+    return ExitCode::success;
+  }
+  const torch::Device device = device_named(command.device);
+  if (command.quick) note("--quick: a training of seconds, which shows that everything works and no more");
+  const std::atomic<bool>& stop = stop_on_interrupt();
+  WorkLine line("train");
+  std::atomic<long> done = 0;
+  std::vector<std::optional<deep::TrainedAgent>> trained(specs.size());
+  // Agents that begin with a vanilla one of the same seed wait until all those are there.
+  for (const bool first : {true, false}) {
+    std::vector<std::function<void()>> jobs;
+    std::set<std::uint64_t> seeds;
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      if (specs[i].start_from.empty() != first) continue;
+      jobs.emplace_back([&, i] {
+        trained[i] = deep::train_agent(specs[i], command.folder, device, command.quick, line.hooks(stop));
+        line.say("");
+        line.done(++done, static_cast<long>(specs.size()));
+      });
+    }
+    run_in_parallel(jobs, command.jobs, stop);
+  }
+  Table table;
+  table.column("agent", Align::left).column("seconds").column("belief model, s").column("file", Align::left);
+  Json all = Json::array();
+  bool complete = true;
+  for (const auto& agent : trained) {
+    complete = complete && agent.has_value();
+    if (!agent) continue;
+    const std::string file = (command.folder / (agent->spec.name() + ".agent")).string();
+    table.row({agent->spec.name(), fmt::format("{:.0f}", agent->training_seconds),
+               fmt::format("{:.0f}", agent->belief_seconds), file});
+    all.push_back({{"agent", agent->spec.name()},
+                   {"training_seconds", agent->training_seconds},
+                   {"belief_seconds", agent->belief_seconds},
+                   {"file", file}});
+  }
+  print(command.json ? json_text(Json{{"agents", all}}) : table.text());
+  if (complete) return ExitCode::success;
+  note("interrupted; the same command goes on where it stopped");
+  return ExitCode::interrupted;
+}
+
+}  // namespace
+
+void add_train(CLI::App& app, Task& task) {
+  auto command = std::make_shared<TrainCommand>();
+  CLI::App* sub = app.add_subcommand("train", "Train agents; what is there already is taken, what was cut goes on");
+  sub->add_option("AGENT", command->kinds, "Which: dqn, bp-dqn, ...")->required()->check(one_of(deep::agent_kinds()));
+  sub->add_option("--eps", command->eps, "Radius of the ball to withstand")
+      ->check(real_number({.low = 0, .high = 5}))
+      ->capture_default_str();
+  sub->add_option("--seed", command->seed, "Training seed")->check(seed_number())->capture_default_str();
+  sub->add_option("--seeds", command->seeds, "So many seeds, from --seed on")
+      ->check(whole_number(1, 1000))
+      ->capture_default_str();
+  sub->add_option("--folder", command->folder, "Where agents, curves and checkpoints stand")->capture_default_str();
+  sub->add_option("--config", command->config, "JSON that changes fields of the specification");
+  sub->add_flag("--print-config", command->print_config, "Print the specification and stop");
+  sub->add_option("--device", command->device, "cpu, cuda or cuda:N")->capture_default_str();
+  sub->add_option("--jobs", command->jobs, "Trainings side by side, one core each")
+      ->check(whole_number(1, 256))
+      ->capture_default_str();
+  sub->add_flag("--quick", command->quick, "About two minutes, to see it work");
+  sub->add_flag("--json", command->json, "Print the result as JSON");
+  sub->footer(
+      "Examples:\n"
+      "  maximin_deep train dqn --quick\n"
+      "  maximin_deep train bp-dqn --eps 0.5 --seeds 3 --jobs 2\n"
+      "  maximin_deep train bp-dqn --print-config > mine.json      then: --config mine.json");
+  sub->callback([command, &task] { task = [command] { return train(*command); }; });
+}
+
+}  // namespace maximin::apps

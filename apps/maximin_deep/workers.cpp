@@ -1,0 +1,114 @@
+#include <maximin/apps/maximin_deep/workers.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace maximin::apps {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+unsigned long this_thread() {
+  return static_cast<unsigned long>(std::hash<std::thread::id>{}(std::this_thread::get_id()));
+}
+
+std::string duration(double seconds) {
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+}  // namespace
+
+void run_in_parallel(const std::vector<std::function<void()>>& jobs, int threads, const std::atomic<bool>& stop) {
+  std::atomic<std::size_t> next = 0;
+  std::atomic<bool> failed = false;
+  std::mutex mutex;
+  std::exception_ptr error;
+  const auto work = [&] {
+    while (!stop && !failed) {
+      const std::size_t job = next++;
+      if (job >= jobs.size()) return;
+      try {
+        jobs[job]();
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!error) error = std::current_exception();
+        failed = true;
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> pool;
+    for (int t = 1; t < threads; ++t) pool.emplace_back(work);
+    work();
+  }
+  if (error) std::rethrow_exception(error);
+}
+
+WorkLine::WorkLine(std::string title) : progress_(std::move(title)) {}
+
+void WorkLine::show() {
+  std::string text = of_ > 0 ? fmt::format("{} of {}", done_, of_) : "";
+  for (const auto& [thread, line] : lines_) {
+    if (!text.empty()) text += "; ";
+    text += line;
+  }
+  progress_.stage(text);
+}
+
+void WorkLine::say(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  if (text.empty()) {
+    lines_.erase(this_thread());
+  } else {
+    lines_[this_thread()] = text;
+  }
+  show();
+}
+
+void WorkLine::done(long jobs, long of) {
+  const std::lock_guard lock(mutex_);
+  done_ = jobs;
+  of_ = of;
+  show();
+}
+
+deep::TrainingHooks WorkLine::hooks(const std::atomic<bool>& stop) {
+  struct State {
+    std::string part;
+    long frames = 0, first = -1;
+    Clock::time_point start;
+  };
+  auto state = std::make_shared<State>();
+  deep::TrainingHooks hooks;
+  hooks.begin = [this, state](const std::string& part, long frames) {
+    *state = {part, frames, -1, Clock::now()};
+    say(part);
+  };
+  hooks.stretch = [this, state, &stop](const deep::CurvePoint& point) {
+    if (state->first < 0) {
+      state->first = point.frames;
+      state->start = Clock::now();
+    }
+    const double seconds = std::chrono::duration<double>(Clock::now() - state->start).count();
+    const double rate = static_cast<double>(point.frames - state->first) / std::max(seconds, 1e-9);
+    std::string line = fmt::format("{} {:.0f} %", state->part,
+                                   100.0 * static_cast<double>(point.frames) / static_cast<double>(state->frames));
+    if (!std::isnan(point.mean_return)) line += fmt::format(", return {:.0f}", point.mean_return);
+    if (rate > 0 && point.frames > state->first) {
+      line += fmt::format(", {:.0f} frames/s, {} left", rate,
+                          duration(static_cast<double>(state->frames - point.frames) / rate));
+    }
+    say(line);
+    return !stop.load();
+  };
+  return hooks;
+}
+
+}  // namespace maximin::apps

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <maximin/deep/agent.hpp>
+#include <maximin/deep/trained_agent.hpp>
+
+namespace maximin::deep {
+
+/// An attack by its name on the command line.
+struct NamedAttack {
+  std::string name;
+  std::string title;      ///< in tables
+  bool adaptive = false;  ///< knows the whole defence, belief and aggregator and all
+  bool learned = false;   ///< is trained, for minutes, against one agent
+};
+
+/// All of them, weakest knowledge first.
+const std::vector<NamedAttack>& named_attacks();
+
+/// The attack of this name. Throws InputError on a name that there is none of, naming the nearest.
+const NamedAttack& attack_named(const std::string& name);
+
+/// Whom an attack is made for.
+struct AttackTarget {
+  const TrainedAgent* agent = nullptr;
+  Acting acting;  ///< how it acts
+  std::shared_ptr<ActionValueModule>
+      judge;  ///< what the adaptive attacks take for the value of an action when s is true
+};
+
+struct AttackSetting {
+  std::string name = "none";
+  double eps = 0.1;
+  std::uint64_t seed = 1;                                     ///< of a learned attack's training
+  bool quick = false;                                         ///< learned attacks learn for seconds
+  std::filesystem::path file;                                 ///< where a learned attack is kept; empty: nowhere
+  std::function<bool(double share, double reward)> progress;  ///< of its training; false stops it
+};
+
+/// Makes the attack; a learned one is read from its file, or trained and written there. Empty where `progress` stopped
+/// it.
+std::shared_ptr<GridAttack> make_attack(const AttackSetting& setting, const AttackTarget& target);
+
+}  // namespace maximin::deep

@@ -1,0 +1,127 @@
+#include <maximin/deep/evaluation.hpp>
+
+#include <chrono>
+#include <functional>
+
+#include <maximin/deep/attacks/simple_attacks.hpp>
+#include <maximin/deep/set_beliefs.hpp>
+#include <maximin/theory/rollout_in_step.hpp>
+
+namespace maximin::deep {
+namespace {
+
+EpisodesInStep paper_episodes(long episodes, std::uint64_t seed) {
+  EpisodesInStep options;
+  options.horizon = ContinuousGridworld::horizon;
+  options.episodes = episodes;
+  options.seed = seed;
+  return options;
+}
+
+/// The agent with a witness looking at its beliefs right after it took in what was shown.
+class Watched {
+ public:
+  using ObservationType = Point;
+  using ActionType = Action;
+
+  explicit Watched(BeliefAgent& agent) : agent_(&agent) {}
+  void resize(Lane lanes) { agent_->resize(lanes); }
+  void forget(Lane lane) { agent_->forget(lane); }
+  void act(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Stream> streams,
+           std::span<Action> actions) {
+    agent_->act(lanes, shown, streams, actions);
+    if (looked) looked(lanes);
+  }
+  const BeliefAgent& agent() const { return *agent_; }
+
+  std::function<void(std::span<const Lane>)> looked;
+
+ private:
+  BeliefAgent* agent_;
+};
+
+/// The attack on what is watched: keeps to the ball, and remembers the truths.
+class WatchedAttack {
+ public:
+  WatchedAttack(GridAttack& attack, const ObservationBall& ball) : bounded_(attack, ball) {}
+  void resize(Lane lanes) { bounded_.resize(lanes); }
+  void forget(Lane lane) { bounded_.forget(lane); }
+  void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const Watched& watched,
+               std::span<Stream> streams, std::span<Point> shown) {
+    truths_.assign(truths.begin(), truths.end());
+    bounded_.perturb(lanes, truths, watched.agent(), streams, shown);
+  }
+  const std::vector<Point>& truths() const { return truths_; }
+
+ private:
+  WithinBallInStep bounded_;
+  std::vector<Point> truths_;
+};
+
+TraceBelief belief_for_pictures(const BeliefAgent& agent, Lane lane) {
+  TraceBelief out;
+  if (const auto* sets = dynamic_cast<const SetBeliefs*>(&agent.belief())) {
+    out.boxes = sets->set(lane).boxes();
+    return out;
+  }
+  const BeliefStates& states = agent.acted_on();
+  const torch::Tensor places = states.states[0].contiguous(), weights = states.weights[0].contiguous();
+  for (long k = 0; k < places.size(0); ++k) {
+    out.points.push_back({places[k][0].item<double>(), places[k][1].item<double>()});
+    out.weights.push_back(weights[k].item<double>());
+  }
+  return out;
+}
+
+}  // namespace
+
+AgentEvaluation evaluate_agent(BeliefAgent& agent, GridAttack& attack, const ObservationBall& ball, long episodes,
+                               std::uint64_t seed) {
+  AgentEvaluation out;
+  ContinuousGridworld world;
+  Watched watched(agent);
+  WatchedAttack bounded(attack, ball);
+  long held = 0;
+  double area = 0;
+  watched.looked = [&](std::span<const Lane> lanes) {
+    for (std::size_t k = 0; k < lanes.size(); ++k) {
+      ++out.steps;
+      held += agent.belief().holds(lanes[k], bounded.truths()[k]);
+      area += agent.belief().size(lanes[k]);
+    }
+  };
+  const auto start = std::chrono::steady_clock::now();
+  const auto played = rollout_in_step(world, watched, bounded, paper_episodes(episodes, seed),
+                                      [&](long, const StepRecord<Point, Point, Action>& record) {
+                                        if (!record.terminal) return;
+                                        const bool gold = gridworld::cell(record.next) == gridworld::Cell::gold;
+                                        ++(gold ? out.gold : out.bomb);
+                                      });
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (const Episode& e : played) out.returns.push_back(e.total_reward);
+  out.truth_in_belief = static_cast<double>(held) / static_cast<double>(out.steps);
+  out.belief_size = area / static_cast<double>(out.steps);
+  out.empty_intersections = agent.belief().empty_intersections();
+  return out;
+}
+
+EpisodeTrace trace_episode(BeliefAgent& agent, GridAttack& attack, const ObservationBall& ball, std::uint64_t seed,
+                           long number) {
+  EpisodeTrace trace;
+  trace.eps = ball.eps();
+  trace.evaluation_seed = seed;
+  trace.episode = number;
+  ContinuousGridworld world;
+  Watched watched(agent);
+  WatchedAttack bounded(attack, ball);
+  TraceBelief belief;
+  watched.looked = [&](std::span<const Lane> lanes) { belief = belief_for_pictures(agent, lanes[0]); };
+  EpisodesInStep options = paper_episodes(number + 1, seed);
+  options.lanes = 1;
+  rollout_in_step(world, watched, bounded, options, [&](long k, const StepRecord<Point, Point, Action>& record) {
+    if (k == number) trace.add(record, belief);
+  });
+  return trace;
+}
+
+}  // namespace maximin::deep
