@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -75,7 +76,7 @@ void fill_uniform(float* out, long count, std::array<std::uint32_t, 2> key, std:
 /// Box and Muller: pairs of rows of uniform numbers [n, 2, m] to standard normal ones [n, 2m].
 torch::Tensor to_normal(const torch::Tensor& uniform) {
   const torch::Tensor radius = uniform.select(1, 0).log().mul_(-2).sqrt_();
-  const torch::Tensor angle = uniform.select(1, 1) * (2 * M_PI);
+  const torch::Tensor angle = uniform.select(1, 1) * (2 * std::numbers::pi);
   return torch::cat({angle.cos().mul_(radius), angle.sin().mul_(radius)}, 1);
 }
 
@@ -106,7 +107,7 @@ PfRnnBelief::PfRnnBelief(PfRnnPtr module, const PfBeliefOptions& options)
   }
   if (!(options_.hull_margin >= 0)) {
     throw InputError("PF-RNN belief: hull margin " + std::to_string(options_.hull_margin) +
-                     ", expected 0 or more, e.g. 0.1");
+                     ", expected 0 or more, e.g. 0.25");
   }
   module_->eval();
 }

@@ -21,7 +21,7 @@ struct PfBeliefOptions {
   /// the belief falls back to the open part of the ball, spread evenly, and the case is counted.
   double slack = 0.5;
   /// `holds` and `size` are of the smallest box around the particles, widened by this many eps on each side.
-  double hull_margin = 0.1;
+  double hull_margin = 0.25;
   bool forgets = true;  ///< false: hidden states go on from one episode to the next, as released
   std::uint64_t seed = 1;
 

@@ -166,6 +166,7 @@ PfTrainingOptions PfTrainingOptions::published() {
   options.learning_rate = 5e-4;
   options.decay = false;
   options.dropout = 0.5;
+  options.elbo_weight = 1;
   options.kernel = 0;
   options.time_weight = 0.1;
   return options;
