@@ -1,0 +1,54 @@
+#include <maximin/apps/maximin_deep/attack_options.hpp>
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/option_checks.hpp>
+#include <maximin/theory/error.hpp>
+
+namespace maximin::apps {
+
+void add_attack_options(CLI::App& sub, AttackedAgent& o) {
+  sub.add_option("--eps", o.eps, "Radius of the attack's ball; what the agent was trained for unless given")
+      ->check(real_number({.low = 0, .high = 5}));
+  sub.add_option(
+      "--judge", o.judge,
+      "Agent file whose values adaptive attacks go by; unless given, the vanilla agent of the same seed beside "
+      "the file, else the agent itself");
+  sub.add_option("--belief", o.belief, "In place of the agent's own: observed, ball, exact, pf-lstm, pf-gru")
+      ->check(one_of({"observed", "ball", "exact", "pf-lstm", "pf-gru"}));
+  sub.add_option("--aggregator", o.aggregator, "In place of its own: min, mean, soft-min:BETA, cvar:ALPHA");
+  sub.add_option("--random-actions", o.random_actions, "Share of random actions, in place of its own")
+      ->check(real_number({.low = 0, .high = 1}));
+  sub.add_option("--attack-seed", o.attack_seed, "Seed of a learned attack's training")->check(seed_number());
+  sub.add_flag("--quick", o.quick, "Learned attacks learn for seconds");
+}
+
+Match prepare_match(const AttackedAgent& o) {
+  Match match;
+  match.trained = std::make_unique<deep::TrainedAgent>(deep::read_agent(o.file));
+  deep::AgentSpec& spec = match.trained->spec;
+  match.eps = o.eps >= 0 ? o.eps : spec.eps;
+  // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
+  if (!spec.knows_eps()) spec.eps = match.eps;
+  match.acting = deep::acting_of(spec);
+  if (!o.belief.empty()) match.acting.belief = o.belief;
+  if (!o.aggregator.empty()) match.acting.aggregator = o.aggregator;
+  if (o.random_actions >= 0) match.acting.random_actions = o.random_actions;
+  match.agent = deep::make_agent(*match.trained, match.acting);
+  deep::AttackTarget target{match.trained.get(), match.acting, match.trained->values()};
+  const std::filesystem::path vanilla = o.file.parent_path() / fmt::format("dqn-seed{}.agent", spec.training.seed);
+  if (!o.judge.empty()) {
+    target.judge = deep::read_agent(o.judge).values();
+  } else if (std::filesystem::exists(vanilla)) {
+    target.judge = deep::read_agent(vanilla).values();
+  }
+  deep::AttackSetting setting;
+  setting.name = o.attack;
+  setting.eps = match.eps;
+  setting.seed = o.attack_seed;
+  setting.quick = o.quick;
+  match.attack = deep::make_attack(setting, target);
+  return match;
+}
+
+}  // namespace maximin::apps

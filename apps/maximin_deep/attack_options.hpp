@@ -1,0 +1,42 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <maximin/deep/attacks/named_attack.hpp>
+#include <maximin/deep/trained_agent.hpp>
+
+namespace maximin::apps {
+
+/// An agent from its file under an attack by name: what `evaluate` and `watch` share.
+struct AttackedAgent {
+  std::filesystem::path file;
+  std::string attack = "none";
+  double eps = -1;  ///< of the attack; negative: what the agent was trained for
+  std::filesystem::path
+      judge;  ///< whose values adaptive attacks go by; empty: a vanilla agent beside the file, or its own
+  std::string belief, aggregator;  ///< in place of the agent's own; empty: its own
+  double random_actions = -1;
+  std::uint64_t attack_seed = 1;
+  bool quick = false;
+};
+
+/// Declares them, all but the file and the attack.
+void add_attack_options(CLI::App& sub, AttackedAgent& options);
+
+/// The agent and the attack, ready to play.
+struct Match {
+  std::unique_ptr<deep::TrainedAgent> trained;
+  deep::Acting acting;
+  std::unique_ptr<deep::BeliefAgent> agent;
+  std::shared_ptr<deep::GridAttack> attack;
+  double eps = 0;
+};
+
+/// Throws InputError on a file or a name that there is none of.
+Match prepare_match(const AttackedAgent& options);
+
+}  // namespace maximin::apps

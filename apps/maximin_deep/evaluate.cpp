@@ -1,0 +1,114 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/json_output.hpp>
+#include <maximin/apps/common/option_checks.hpp>
+#include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/table.hpp>
+#include <maximin/apps/maximin_deep/attack_options.hpp>
+#include <maximin/apps/maximin_deep/commands.hpp>
+#include <maximin/deep/evaluation.hpp>
+#include <maximin/deep/report/estimate.hpp>
+
+namespace maximin::apps {
+
+namespace {
+
+struct EvaluateCommand {
+  std::vector<std::filesystem::path> files;
+  std::vector<std::string> attacks{"none"};
+  AttackedAgent options;
+  long episodes = 100;
+  std::uint64_t seed = 1000;
+  bool json = false;
+};
+
+double share(long part, long whole) {
+  return static_cast<double>(part) / static_cast<double>(whole);
+}
+
+int evaluate(const EvaluateCommand& command) {
+  Table table;
+  table.column("agent", Align::left).column("attack", Align::left).column("eps", Align::point);
+  table.column("return", Align::point)
+      .column("+-", Align::point)
+      .column("gold")
+      .column("bomb")
+      .column("truth in belief");
+  table.column("belief area", Align::point).column("empty").column("ms/step", Align::point);
+  Json all = Json::array();
+  for (const auto& file : command.files) {
+    for (const std::string& attack : command.attacks) {
+      AttackedAgent options = command.options;
+      options.file = file;
+      options.attack = deep::attack_named(attack).name;
+      const Match match = prepare_match(options);
+      const deep::AgentEvaluation e =
+          deep::evaluate_agent(*match.agent, *match.attack, ObservationBall(match.eps), command.episodes, command.seed);
+      const std::vector<deep::SeedRun> run{{match.trained->spec.training.seed, command.seed, e.returns, e.seconds}};
+      const deep::Estimate estimate = deep::estimate(run);
+      const double half = estimate.shown() ? estimate.shown()->half_width : std::nan("");
+      const std::string name = match.trained->spec.name();
+      table.row({name, attack, fmt::format("{:g}", match.eps), fmt::format("{:.1f}", estimate.mean),
+                 fmt::format("{:.1f}", half), std::to_string(e.gold), std::to_string(e.bomb),
+                 fmt::format("{:.1f} %", 100 * e.truth_in_belief), fmt::format("{:.3f}", e.belief_size),
+                 std::to_string(e.empty_intersections), fmt::format("{:.3f}", 1000 * e.seconds / double(e.steps))});
+      all.push_back({{"agent", name},
+                     {"attack", attack},
+                     {"eps", match.eps},
+                     {"mean_return", estimate.mean},
+                     {"half_width_95", half},
+                     {"gold", share(e.gold, command.episodes)},
+                     {"bomb", share(e.bomb, command.episodes)},
+                     {"truth_in_belief", e.truth_in_belief},
+                     {"belief_area", e.belief_size},
+                     {"empty_intersections", e.empty_intersections},
+                     {"steps", e.steps},
+                     {"seconds", e.seconds},
+                     {"returns", e.returns}});
+    }
+  }
+  if (command.json) {
+    print(json_text(Json{{"episodes", command.episodes}, {"seed", command.seed}, {"results", all}}));
+    return ExitCode::success;
+  }
+  print(table.text());
+  print(fmt::format("{} episodes each; +- is a 95 percent interval over episodes of these very networks.\n",
+                    command.episodes));
+  return ExitCode::success;
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Task& task) {
+  auto command = std::make_shared<EvaluateCommand>();
+  CLI::App* sub = app.add_subcommand("evaluate", "What trained agents get under attacks");
+  sub->add_option("FILE", command->files, "Agent files")->required();
+  std::vector<std::string> names;
+  for (const auto& attack : deep::named_attacks()) names.push_back(attack.name);
+  sub->add_option("--attack", command->attacks, "One or more attacks")->check(one_of(names))->capture_default_str();
+  add_attack_options(*sub, command->options);
+  sub->add_option("--episodes", command->episodes, "Episodes of each")
+      ->check(whole_number(2, 1'000'000))
+      ->capture_default_str();
+  sub->add_option("--seed", command->seed, "Episode k is drawn from (seed, k)")
+      ->check(seed_number())
+      ->capture_default_str();
+  sub->add_flag("--json", command->json, "Print the result as JSON");
+  std::string listing = "Attacks:\n";
+  for (const auto& a : deep::named_attacks()) {
+    listing +=
+        fmt::format("  {:16} {}{}\n", a.name, a.adaptive ? "knows the whole defence" : "does not know of beliefs",
+                    a.learned ? ", learned" : "");
+  }
+  sub->footer(listing +
+              "Examples:\n"
+              "  maximin_deep evaluate runs/bp-dqn-eps0.5-seed1.agent --attack none pgd min-best best-response\n"
+              "  maximin_deep evaluate runs/dqn-seed1.agent --belief exact --eps 0.5 --attack pgd");
+  sub->callback([command, &task] { task = [command] { return evaluate(*command); }; });
+}
+
+}  // namespace maximin::apps

@@ -1,0 +1,282 @@
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/interrupt.hpp>
+#include <maximin/apps/common/option_checks.hpp>
+#include <maximin/apps/common/program.hpp>
+#include <maximin/apps/maximin_deep/commands.hpp>
+#include <maximin/apps/maximin_deep/table_plan.hpp>
+#include <maximin/apps/maximin_deep/workers.hpp>
+#include <maximin/deep/attacks/named_attack.hpp>
+#include <maximin/deep/evaluation.hpp>
+#include <maximin/deep/report/results_file.hpp>
+#include <maximin/deep/report/results_page.hpp>
+#include <maximin/deep/report/results_text.hpp>
+#include <maximin/models/files/output_file.hpp>
+
+namespace maximin::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TableCommand {
+  std::string kind;
+  fs::path folder = "runs";
+  fs::path output = "results";
+  int seeds = 3;
+  std::uint64_t first_seed = 0;  ///< 0: 1 for the table, 101 for the choice of an aggregator
+  long episodes = 100;
+  std::vector<std::string> only;
+  int jobs = 1;
+  bool quick = false;
+
+  std::uint64_t seed(int k) const {
+    const std::uint64_t first = first_seed > 0 ? first_seed : kind == "aggregators" ? 101 : 1;
+    return first + static_cast<std::uint64_t>(k);
+  }
+};
+
+/// The work of one table: trainings, then evaluations, each of them a job; what is done already is left out.
+class TableMaker {
+ public:
+  TableMaker(const TableCommand& command, std::vector<PlannedCell> plan)
+      : command_(command), plan_(std::move(plan)), line_(command.kind), stop_(stop_on_interrupt()) {}
+
+  int run() {
+    deep::ResultFile file = deep::ResultFile::open(command_.output / (command_.kind + ".json"), planned_table());
+    for (const bool first : {true, false}) train_all(first);
+    evaluate_all(file);
+    if (!stop_) write_pages(file.table());
+    if (stop_) note("interrupted; the same command goes on where it stopped");
+    return stop_ ? ExitCode::interrupted : ExitCode::success;
+  }
+
+ private:
+  fs::path agent_file(const deep::AgentSpec& spec) const { return command_.folder / (spec.name() + ".agent"); }
+
+  deep::ResultTable planned_table() const {
+    deep::ResultTable table;
+    table.title = command_.kind == "aggregators" ? "Which aggregator BP-DQN acts by" : "Continuous Gridworld";
+    table.version = MAXIMIN_VERSION;
+    table.command = fmt::format("maximin_deep table {} --seeds {} --episodes {}{}", command_.kind, command_.seeds,
+                                command_.episodes, command_.quick ? " --quick" : "");
+    table.configuration["episodes"] = command_.episodes;
+    table.configuration["quick"] = command_.quick;
+    std::set<std::string> kinds;
+    for (const PlannedCell& cell : plan_) {
+      const deep::AgentSpec spec = spec_of(cell, command_.seed(0), command_.quick);
+      if (kinds.insert(spec.name()).second) table.configuration["agents"][spec.name()] = deep::to_json(spec);
+      deep::ResultBlock* block = table.find(cell.block);
+      if (!block) block = &table.blocks.emplace_back(deep::ResultBlock{cell.block, "", {}});
+      block->cells.push_back(cell.cell);
+    }
+    return table;
+  }
+
+  /// Vanilla agents first, since others begin with them.
+  void train_all(bool first) {
+    std::vector<deep::AgentSpec> specs;
+    std::set<std::string> names;
+    for (int k = 0; k < command_.seeds; ++k) {
+      for (const PlannedCell& cell : plan_) {
+        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.quick);
+        add_training(first, spec, specs, names);
+        const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, command_.seed(k), command_.quick);
+        add_training(first, vanilla, specs, names);
+      }
+    }
+    std::atomic<long> done = 0;
+    std::vector<std::function<void()>> jobs;
+    for (const deep::AgentSpec& spec : specs) {
+      jobs.emplace_back([&, spec] {
+        deep::train_agent(spec, command_.folder, torch::kCPU, command_.quick, line_.hooks(stop_));
+        line_.say("");
+        line_.done(++done, static_cast<long>(specs.size()));
+      });
+    }
+    run_in_parallel(jobs, command_.jobs, stop_);
+  }
+
+  static void add_training(bool first, const deep::AgentSpec& spec, std::vector<deep::AgentSpec>& specs,
+                           std::set<std::string>& names) {
+    if (spec.start_from.empty() == first && names.insert(spec.name()).second) specs.push_back(spec);
+  }
+
+  void evaluate_all(deep::ResultFile& file) {
+    std::mutex mutex;
+    std::atomic<long> done = 0;
+    std::vector<std::function<void()>> jobs;
+    const long all = static_cast<long>(plan_.size()) * command_.seeds;
+    for (int k = 0; k < command_.seeds; ++k) {
+      for (const PlannedCell& cell : plan_) {
+        if (file.has(cell.block, cell.cell, command_.seed(k))) {
+          ++done;
+          continue;
+        }
+        jobs.emplace_back([&, k, cell] {
+          line_.say(fmt::format("{} / {} {:g}", cell.cell.agent, cell.cell.attack, cell.attack_eps));
+          deep::ResultCell measured = cell.cell;
+          const auto run = evaluate_cell(cell, command_.seed(k), measured);
+          line_.say("");
+          line_.done(++done, all);
+          if (!run) return;
+          const std::lock_guard lock(mutex);
+          file.put(cell.block, measured, *run);
+        });
+      }
+    }
+    run_in_parallel(jobs, command_.jobs, stop_);
+  }
+
+  struct Ready {
+    deep::TrainedAgent trained;
+    deep::Acting acting;
+    std::unique_ptr<deep::BeliefAgent> agent;
+    std::shared_ptr<deep::GridAttack> attack;
+  };
+
+  /// The agent of a cell and the attack on it. Its attack is empty where it was interrupted.
+  Ready prepare(const PlannedCell& cell, std::uint64_t seed) {
+    const deep::AgentSpec spec = spec_of(cell, seed, command_.quick);
+    Ready ready{deep::read_agent(agent_file(spec)), deep::acting_of(spec), nullptr, nullptr};
+    if (!cell.belief.empty()) ready.acting.belief = cell.belief;
+    if (!cell.aggregator.empty()) ready.acting.aggregator = cell.aggregator;
+    if (!cell.belief.empty()) ready.acting.belief_states = 32;
+    // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
+    if (!spec.knows_eps()) ready.trained.spec.eps = cell.attack_eps;
+    ready.agent = deep::make_agent(ready.trained, ready.acting);
+    const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, seed, command_.quick);
+    const deep::AttackTarget target{&ready.trained, ready.acting, deep::read_agent(agent_file(vanilla)).values()};
+    deep::AttackSetting setting;
+    setting.name = cell.attack;
+    setting.eps = cell.attack_eps;
+    setting.seed = seed;
+    setting.quick = command_.quick;
+    setting.file = command_.folder / fmt::format("{}-{}{}-{}-eps{:g}.attacker", spec.name(), ready.acting.belief,
+                                                 cell.aggregator, cell.attack, cell.attack_eps);
+    setting.progress = [this, &cell](double share, double) {
+      line_.say(fmt::format("{} / {} {:g}: learns, {:.0f} %", cell.cell.agent, cell.cell.attack, cell.attack_eps,
+                            100 * share));
+      return !stop_.load();
+    };
+    ready.attack = deep::make_attack(setting, target);
+    return ready;
+  }
+
+  std::optional<deep::SeedRun> evaluate_cell(const PlannedCell& cell, std::uint64_t seed, deep::ResultCell& measured) {
+    const auto start = std::chrono::steady_clock::now();
+    const Ready ready = prepare(cell, seed);
+    if (!ready.attack) return std::nullopt;
+    const std::uint64_t evaluation_seed = 1000 + seed;
+    const deep::AgentEvaluation e = deep::evaluate_agent(*ready.agent, *ready.attack, ObservationBall(cell.attack_eps),
+                                                         command_.episodes, evaluation_seed);
+    measured.measures = {{"truth in belief", e.truth_in_belief},
+                         {"belief area", e.belief_size},
+                         {"empty intersections", static_cast<double>(e.empty_intersections)}};
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return deep::SeedRun{seed, evaluation_seed, e.returns, seconds};
+  }
+
+  std::vector<deep::TrainingCurve> curves() const {
+    std::vector<deep::TrainingCurve> out;
+    std::set<std::string> names;
+    for (int k = 0; k < command_.seeds; ++k) {
+      for (const PlannedCell& cell : plan_) {
+        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.quick);
+        const fs::path log = command_.folder / (spec.name() + ".csv");
+        if (!names.insert(spec.name()).second || !fs::exists(log)) continue;
+        const std::string title = spec.knows_eps() ? fmt::format("{} {:g}", cell.kind, spec.eps) : cell.kind;
+        out.push_back({title, spec.training.seed, deep::read_training_log(log)});
+      }
+    }
+    return out;
+  }
+
+  /// One episode of each of a few cells at the larger radius.
+  std::vector<deep::EpisodeTrace> traces() {
+    std::vector<deep::EpisodeTrace> out;
+    for (const PlannedCell& cell : plan_) {
+      const bool shown = (cell.kind == "bp-dqn" || cell.kind == "dqn" || cell.kind == "bp-dqn-lstm") &&
+                         cell.belief.empty() && cell.attack_eps > 0.3 && out.size() < 12 && cell.block != "ablation";
+      if (!shown) continue;
+      const Ready ready = prepare(cell, command_.seed(0));
+      if (!ready.attack) continue;
+      deep::EpisodeTrace trace = deep::trace_episode(*ready.agent, *ready.attack, ObservationBall(cell.attack_eps),
+                                                     1000 + command_.seed(0), 3);
+      trace.agent = cell.cell.agent;
+      trace.attack = cell.cell.attack;
+      trace.training_seed = command_.seed(0);
+      out.push_back(std::move(trace));
+    }
+    return out;
+  }
+
+  void write_pages(deep::ResultTable table) {
+    add_strongest(table);
+    const fs::path base = command_.output / command_.kind;
+    write_file(base.string() + ".md", deep::markdown(table), Overwrite::replace);
+    write_file(base.string() + ".html", deep::results_page(table, curves(), traces()), Overwrite::replace);
+    print(deep::markdown(table));
+  }
+
+  TableCommand command_;
+  std::vector<PlannedCell> plan_;
+  WorkLine line_;
+  const std::atomic<bool>& stop_;
+};
+
+int make_table(const TableCommand& command) {
+  std::vector<PlannedCell> plan = command.kind == "aggregators" ? aggregators_plan() : gridworld_plan();
+  if (!command.only.empty()) {
+    std::erase_if(plan, [&](const PlannedCell& c) {
+      return std::find(command.only.begin(), command.only.end(), c.kind) == command.only.end();
+    });
+  }
+  if (plan.empty()) throw InputError("--only: names no agent of the table, expected e.g. dqn");
+  if (command.quick) note("--quick: everything in small, to see that it works; the numbers mean nothing");
+  fs::create_directories(command.folder);
+  fs::create_directories(command.output);
+  return TableMaker(command, std::move(plan)).run();
+}
+
+}  // namespace
+
+void add_table(CLI::App& app, Task& task) {
+  auto command = std::make_shared<TableCommand>();
+  CLI::App* sub =
+      app.add_subcommand("table", "Every agent under every attack: JSON, Markdown and a page with pictures");
+  sub->add_option("TABLE", command->kind, "gridworld: the paper's; aggregators: how BP-DQN's was chosen")
+      ->required()
+      ->check(one_of({"gridworld", "aggregators"}));
+  sub->add_option("--folder", command->folder, "Trained agents and attackers; what is missing is trained")
+      ->capture_default_str();
+  sub->add_option("--output", command->output, "Folder for the table")->capture_default_str();
+  sub->add_option("--seeds", command->seeds, "Training seeds")->check(whole_number(1, 1000))->capture_default_str();
+  sub->add_option("--first-seed", command->first_seed, "The first of them; 1, or 101 for aggregators")
+      ->check(seed_number());
+  sub->add_option("--episodes", command->episodes, "Episodes of each cell and seed")
+      ->check(whole_number(2, 1'000'000))
+      ->capture_default_str();
+  sub->add_option("--only", command->only, "Agents to leave in, e.g. dqn bp-dqn")->check(one_of(deep::agent_kinds()));
+  sub->add_option("--jobs", command->jobs, "Trainings and evaluations side by side")
+      ->check(whole_number(1, 256))
+      ->capture_default_str();
+  sub->add_flag("--quick", command->quick, "About two minutes, to see it work");
+  sub->footer(
+      "A table that was cut goes on where it stopped.\n"
+      "Examples:\n"
+      "  maximin_deep table gridworld --quick --seeds 1 --output /tmp/quick --folder /tmp/quick/agents\n"
+      "  maximin_deep table gridworld --jobs 4 --folder results/gridworld/agents --output results/gridworld");
+  sub->callback([command, &task] { task = [command] { return make_table(*command); }; });
+}
+
+}  // namespace maximin::apps

@@ -1,0 +1,199 @@
+#include <maximin/apps/maximin_deep/table_plan.hpp>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <maximin/deep/attacks/named_attack.hpp>
+#include <maximin/deep/report/estimate.hpp>
+
+namespace maximin::apps {
+
+namespace {
+
+constexpr const char* paper_block = "the paper's attacks";
+constexpr const char* adaptive_block = "adaptive attacks";
+constexpr const char* strongest_block = "strongest adaptive attack found";
+constexpr const char* ablation_block = "ablation";
+constexpr const char* noisy_block = "noisy environment";
+constexpr const char* aggregator_block = "aggregators of BP-DQN";
+
+constexpr double radii[] = {0.1, 0.5};
+
+struct Row {
+  const char* kind;
+  const char* title;
+  const char* belief = "";
+  const char* aggregator = "";
+};
+
+const std::vector<Row>& agents() {
+  static const std::vector<Row> rows{{"dqn", "DQN"},
+                                     {"sa-dqn", "SA-DQN"},
+                                     {"wocar-dqn", "WocaR-DQN"},
+                                     {"radial-dqn", "Radial-DQN"},
+                                     {"car-dqn", "CAR-DQN"},
+                                     {"bp-dqn", "BP-DQN (exact belief)"},
+                                     {"bp-dqn-lstm", "BP-DQN (PF-LSTM)"}};
+  return rows;
+}
+
+using Figure = std::optional<deep::PaperFigure>;
+
+/// Means and standard deviations that the paper prints (its tables of the continuous Gridworld), by agent and column.
+Figure paper_figure(const std::string& block, const std::string& row, const std::string& attack, double eps) {
+  using Key = std::pair<std::string, std::string>;
+  const std::string column = attack == "none" ? "none" : fmt::format("{} {:g}", attack, eps);
+  static const std::map<Key, deep::PaperFigure> main{{{"DQN", "none"}, {156.5, 90.2}},
+                                                     {{"DQN", "pgd 0.1"}, {128, 118}},
+                                                     {{"DQN", "pgd 0.5"}, {-53, 86}},
+                                                     {{"DQN", "min-best 0.1"}, {98.2, 137}},
+                                                     {{"DQN", "min-best 0.5"}, {98.2, 137}},
+                                                     {{"DQN", "pa-ad 0.1"}, {-10.7, 136}},
+                                                     {{"DQN", "pa-ad 0.5"}, {-35.9, 118}},
+                                                     {{"SA-DQN", "none"}, {20.8, 140}},
+                                                     {{"SA-DQN", "pgd 0.1"}, {46, 142}},
+                                                     {{"SA-DQN", "pgd 0.5"}, {-100, 0}},
+                                                     {{"SA-DQN", "min-best 0.1"}, {-5.8, 131}},
+                                                     {{"SA-DQN", "min-best 0.5"}, {-100, 0}},
+                                                     {{"SA-DQN", "pa-ad 0.1"}, {-97.5, 13.6}},
+                                                     {{"SA-DQN", "pa-ad 0.5"}, {-67.8, 78.3}},
+                                                     {{"WocaR-DQN", "none"}, {-63, 88}},
+                                                     {{"WocaR-DQN", "pgd 0.1"}, {-100, 0}},
+                                                     {{"WocaR-DQN", "pgd 0.5"}, {-63.2, 88}},
+                                                     {{"WocaR-DQN", "min-best 0.1"}, {-100, 0}},
+                                                     {{"WocaR-DQN", "min-best 0.5"}, {-63.2, 88}},
+                                                     {{"WocaR-DQN", "pa-ad 0.1"}, {-100, 0}},
+                                                     {{"WocaR-DQN", "pa-ad 0.5"}, {-63.2, 88}},
+                                                     {{"Radial-DQN", "none"}, {-100, 0}},
+                                                     {{"Radial-DQN", "pgd 0.1"}, {-96.1, 12.3}},
+                                                     {{"Radial-DQN", "pgd 0.5"}, {-96.1, 12.3}},
+                                                     {{"Radial-DQN", "min-best 0.1"}, {-100, 0}},
+                                                     {{"Radial-DQN", "min-best 0.5"}, {-100, 0}},
+                                                     {{"Radial-DQN", "pa-ad 0.1"}, {-100, 0}},
+                                                     {{"Radial-DQN", "pa-ad 0.5"}, {-100, 0}},
+                                                     {{"BP-DQN", "none"}, {163, 26}},
+                                                     {{"BP-DQN", "pgd 0.1"}, {165, 29}},
+                                                     {{"BP-DQN", "pgd 0.5"}, {176, 16}},
+                                                     {{"BP-DQN", "min-best 0.1"}, {147, 88}},
+                                                     {{"BP-DQN", "min-best 0.5"}, {114, 114}},
+                                                     {{"BP-DQN", "pa-ad 0.1"}, {171.9, 17}},
+                                                     {{"BP-DQN", "pa-ad 0.5"}, {177.2, 10.6}}};
+  static const std::map<Key, deep::PaperFigure> ablation{{{"maximin only", "pgd 0.5"}, {-71, 91}},
+                                                         {{"belief only", "pgd 0.5"}, {45.7, 134}},
+                                                         {{"BP-DQN", "pgd 0.5"}, {176, 16}}};
+  static const std::map<Key, deep::PaperFigure> noisy{
+      {{"BP-DQN", "none"}, {102, 110}},          {{"BP-DQN", "pgd 0.1"}, {101.5, 109}},
+      {{"BP-DQN", "pgd 0.5"}, {56, 135}},        {{"BP-DQN", "min-best 0.1"}, {79.3, 125}},
+      {{"BP-DQN", "min-best 0.5"}, {30.7, 138}}, {{"BP-DQN", "pa-ad 0.1"}, {78.6, 125}},
+      {{"BP-DQN", "pa-ad 0.5"}, {13.1, 140}}};
+  const auto& figures = block == paper_block ? main : block == ablation_block ? ablation : noisy;
+  const std::string agent = row.starts_with("BP-DQN") ? "BP-DQN" : row;
+  const auto found = figures.find({agent, column});
+  if (block == adaptive_block || block == aggregator_block || found == figures.end()) return std::nullopt;
+  return found->second;
+}
+
+PlannedCell planned(const std::string& block, const Row& row, double trained_eps, const std::string& attack,
+                    double attack_eps) {
+  PlannedCell p;
+  p.block = block;
+  p.kind = row.kind;
+  p.trained_eps = trained_eps;
+  p.belief = row.belief;
+  p.aggregator = row.aggregator;
+  p.attack = attack;
+  p.attack_eps = attack_eps;
+  p.cell.agent = row.title;
+  p.cell.attack = deep::attack_named(attack).title;
+  p.cell.eps = attack_eps;
+  p.cell.paper = paper_figure(block, row.title, attack, attack_eps);
+  if (attack == "none" && trained_eps > radii[0]) {
+    p.cell.attack += fmt::format(", trained for {:g}", trained_eps);
+    p.cell.paper.reset();
+  }
+  if (block == paper_block && std::string(row.kind) == "bp-dqn" && p.cell.paper) {
+    p.cell.target = deep::Target{deep::Target::Sense::at_least, p.cell.paper->mean};
+  }
+  return p;
+}
+
+void add_columns(std::vector<PlannedCell>& plan, const char* block, const Row& row,
+                 const std::vector<std::string>& attacks) {
+  for (const std::string& attack : attacks) {
+    for (const double eps : radii) plan.push_back(planned(block, row, eps, attack, attack == "none" ? 0 : eps));
+  }
+}
+
+std::vector<std::string> attacks_where(bool adaptive) {
+  std::vector<std::string> names;
+  for (const deep::NamedAttack& a : deep::named_attacks()) {
+    if (a.adaptive == adaptive) names.push_back(a.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, bool quick) {
+  deep::AgentSpec spec = deep::recipe(cell.kind, cell.trained_eps, seed, quick);
+  if (!cell.config.empty()) deep::merge_json(spec, nlohmann::ordered_json::parse(cell.config), "plan");
+  return spec;
+}
+
+std::vector<PlannedCell> gridworld_plan() {
+  std::vector<PlannedCell> plan;
+  const std::vector<std::string> simple = attacks_where(false);
+  for (const Row& row : agents()) add_columns(plan, paper_block, row, simple);
+  for (const Row& row : agents()) add_columns(plan, adaptive_block, row, attacks_where(true));
+  std::vector<std::string> all{"pgd"};
+  for (const std::string& name : attacks_where(true)) all.push_back(name);
+  add_columns(plan, ablation_block, {"bp-dqn", "BP-DQN (exact belief)"}, all);
+  add_columns(plan, ablation_block, {"bp-dqn", "maximin only", "ball", "min"}, all);
+  add_columns(plan, ablation_block, {"dqn", "belief only", "exact", "mean"}, all);
+  add_columns(plan, noisy_block, {"bp-dqn-noisy", "BP-DQN, learned in noise"}, simple);
+  return plan;
+}
+
+std::vector<PlannedCell> aggregators_plan() {
+  std::vector<PlannedCell> plan;
+  for (const char* aggregator : {"min", "cvar:0.25", "cvar:0.5", "soft-min:1", "mean"}) {
+    const std::size_t first = plan.size();
+    std::vector<std::string> all{"none", "pgd", "constant-offset"};
+    for (const std::string& name : attacks_where(true)) all.push_back(name);
+    add_columns(plan, aggregator_block, {"bp-dqn", aggregator}, all);
+    for (std::size_t i = first; i < plan.size(); ++i) {
+      plan[i].config = fmt::format(R"({{"kind": "bp-dqn-{0}", "aggregator": "{0}"}})", aggregator);
+    }
+  }
+  return plan;
+}
+
+void add_strongest(deep::ResultTable& table) {
+  const deep::ResultBlock* adaptive = table.find(adaptive_block);
+  if (!adaptive) return;
+  deep::ResultBlock out;
+  out.name = strongest_block;
+  out.note = "For each agent and radius the attack of the block of adaptive attacks that left it least on average.";
+  for (const deep::ResultCell& cell : adaptive->cells) {
+    if (cell.runs.empty()) continue;
+    deep::ResultCell* best = out.find(cell.agent, "strongest", cell.eps);
+    if (best && deep::estimate(best->runs).mean <= deep::estimate(cell.runs).mean) continue;
+    if (!best) best = &out.cells.emplace_back();
+    *best = cell;
+    best->attack = "strongest";
+    best->note = "by " + cell.attack;
+    if (cell.agent == "BP-DQN (exact belief)") {
+      best->target = deep::Target{deep::Target::Sense::at_least, cell.eps < 0.3 ? 161.0 : 73.0};
+    }
+  }
+  std::erase_if(table.blocks, [](const deep::ResultBlock& b) { return b.name == strongest_block; });
+  const auto after = std::find_if(table.blocks.begin(), table.blocks.end(),
+                                  [](const deep::ResultBlock& b) { return b.name == adaptive_block; });
+  table.blocks.insert(after + 1, std::move(out));
+}
+
+}  // namespace maximin::apps

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <maximin/deep/report/results.hpp>
+#include <maximin/deep/trained_agent.hpp>
+
+namespace maximin::apps {
+
+/// A cell of the defence-by-attack table and how it is made.
+struct PlannedCell {
+  std::string block;
+  deep::ResultCell cell;  ///< titles, the paper's figure, the target; no runs yet
+  std::string kind;       ///< of the agent that is trained, e.g. "bp-dqn"
+  double trained_eps = 0.1;
+  std::string config;      ///< JSON that changes the recipe; empty: none
+  std::string belief;      ///< acts by this belief instead of its own; empty: its own
+  std::string aggregator;  ///< and by this aggregator
+  std::string attack;      ///< name of the attack
+  double attack_eps = 0;
+};
+
+/// What is to be trained for a cell.
+deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, bool quick);
+
+/// The paper's table of the continuous Gridworld, its ablation and its noisy environment, each with adaptive attacks
+/// beside; and, to choose BP-DQN's aggregator before that table is seen, `aggregators`, on other seeds.
+std::vector<PlannedCell> gridworld_plan();
+std::vector<PlannedCell> aggregators_plan();
+
+/// Cells that follow from others: for every agent and radius the adaptive attack that left it least. Replaces the block
+/// of that name.
+void add_strongest(deep::ResultTable& table);
+
+}  // namespace maximin::apps

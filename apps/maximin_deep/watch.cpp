@@ -1,0 +1,67 @@
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <maximin/apps/common/option_checks.hpp>
+#include <maximin/apps/common/program.hpp>
+#include <maximin/apps/maximin_deep/attack_options.hpp>
+#include <maximin/apps/maximin_deep/commands.hpp>
+#include <maximin/deep/evaluation.hpp>
+#include <maximin/deep/report/animation.hpp>
+#include <maximin/models/files/output_file.hpp>
+
+namespace maximin::apps {
+
+namespace {
+
+struct WatchCommand {
+  AttackedAgent options;
+  std::uint64_t seed = 1000;
+  long episode = 0;
+  std::filesystem::path output = "episode.svg";
+  std::filesystem::path trace;
+  bool force = false;
+};
+
+int watch(const WatchCommand& command) {
+  const Match match = prepare_match(command.options);
+  deep::EpisodeTrace trace =
+      deep::trace_episode(*match.agent, *match.attack, ObservationBall(match.eps), command.seed, command.episode);
+  trace.agent = match.trained->spec.name();
+  trace.attack = command.options.attack;
+  trace.training_seed = match.trained->spec.training.seed;
+  const Overwrite overwrite = command.force ? Overwrite::replace : Overwrite::refuse;
+  write_file(command.output, deep::animated_svg(trace), overwrite);
+  if (!command.trace.empty()) deep::write_trace(command.trace, trace);
+  print(fmt::format("{}: {} under {}, eps {:g}, episode {}: {}\n", command.output.string(), trace.agent, trace.attack,
+                    match.eps, command.episode, trace.outcome()));
+  return ExitCode::success;
+}
+
+}  // namespace
+
+void add_watch(CLI::App& app, Task& task) {
+  auto command = std::make_shared<WatchCommand>();
+  CLI::App* sub = app.add_subcommand("watch", "An episode as a moving picture: truth, what is shown, what is believed");
+  sub->add_option("FILE", command->options.file, "Agent file")->required();
+  std::vector<std::string> names;
+  for (const auto& attack : deep::named_attacks()) names.push_back(attack.name);
+  sub->add_option("--attack", command->options.attack, "The attack")->check(one_of(names))->capture_default_str();
+  add_attack_options(*sub, command->options);
+  sub->add_option("--seed", command->seed, "Episodes are drawn from (seed, number)")
+      ->check(seed_number())
+      ->capture_default_str();
+  sub->add_option("--episode", command->episode, "Number of the episode")
+      ->check(whole_number(0, 100'000))
+      ->capture_default_str();
+  sub->add_option("-o,--output", command->output, "SVG file, for any browser")->capture_default_str();
+  sub->add_option("--trace", command->trace, "Write the steps as JSON too");
+  sub->add_flag("--force", command->force, "Replace the file if it exists");
+  sub->footer(
+      "Example:\n"
+      "  maximin_deep watch runs/bp-dqn-eps0.5-seed1.agent --attack best-response -o episode.svg");
+  sub->callback([command, &task] { task = [command] { return watch(*command); }; });
+}
+
+}  // namespace maximin::apps
