@@ -86,7 +86,8 @@ AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, bool qui
   }
   AgentSpec s = full_recipe(kind, seed);
   s.kind = kind;
-  s.eps = eps;
+  // The same vanilla agent, whatever it will be attacked with.
+  if (s.knows_eps()) s.eps = eps;
   if (quick) {
     const double share = 0.06;
     s.training.frames = static_cast<long>(static_cast<double>(s.training.frames) * share);
