@@ -3,6 +3,7 @@
 
 # The Debian packages of each step; nothing is installed that the chosen step does not need.
 packages_to_build="g++ cmake ninja-build libeigen3-dev libboost-dev libgmp-dev libflint-dev nlohmann-json3-dev libfmt-dev libcli11-dev zlib1g-dev"
+packages_to_learn="libtorch-dev libopenblas0-pthread"
 packages_to_test="libgtest-dev librapidcheck-dev python3 coq libcoq-mathcomp-algebra"
 packages_to_check_fully="clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev libbenchmark-dev"
 
