@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include <maximin/gridworld/box_union.hpp>
 #include <maximin/gridworld/gridworld.hpp>
 #include <maximin/theory/random.hpp>
 #include <maximin/theory/rollout_in_step.hpp>
@@ -9,6 +10,14 @@
 
 /// What the deep layer's agents and attacks have in common. No LibTorch here.
 namespace maximin::deep {
+
+/// What an adaptive attack reads of an agent's memory in one lane.
+struct Mind {
+  bool awake = false;      ///< has seen something of this episode; if not, the rest says nothing
+  Action last_action = 0;  ///< its last
+  Point mean;              ///< of what it held possible when it took it
+  Box hull;                ///< the smallest box around that
+};
 
 /// An agent that acts in many episodes of the Gridworld at once and whose mind can be read. Models AgentInStep.
 class GridAgent {
@@ -29,6 +38,9 @@ class GridAgent {
   /// What the agent would do in these lanes if it were shown this now; nothing is remembered. A lane may occur many
   /// times: that is how an adaptive attack looks for the observation to show.
   virtual void would_do(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Action> actions) const = 0;
+
+  /// What it has in mind in this lane. An agent without memory has nothing.
+  virtual Mind mind(Lane) const { return {}; }
 };
 
 /// Whoever perturbs what an agent of the Gridworld sees. Models AttackInStep.

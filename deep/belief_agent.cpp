@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <maximin/deep/tensors.hpp>
+
 namespace maximin::deep {
 namespace {
 
@@ -22,12 +24,12 @@ BeliefAgent::BeliefAgent(std::shared_ptr<ActionValueModule> q, std::shared_ptr<L
 
 void BeliefAgent::resize(Lane lanes) {
   belief_->resize(lanes);
-  last_.assign(static_cast<std::size_t>(lanes), 0);
+  minds_.assign(static_cast<std::size_t>(lanes), {});
 }
 
 void BeliefAgent::forget(Lane lane) {
   belief_->forget(lane);
-  last_[static_cast<std::size_t>(lane)] = 0;
+  minds_[static_cast<std::size_t>(lane)] = {};
 }
 
 torch::Tensor BeliefAgent::values(const BeliefStates& belief) const {
@@ -41,7 +43,7 @@ torch::Tensor BeliefAgent::values(const BeliefStates& belief) const {
 std::vector<Action> BeliefAgent::last_of(std::span<const Lane> lanes) const {
   std::vector<Action> last;
   last.reserve(lanes.size());
-  for (const Lane l : lanes) last.push_back(last_[static_cast<std::size_t>(l)]);
+  for (const Lane l : lanes) last.push_back(last_action(l));
   return last;
 }
 
@@ -54,7 +56,24 @@ void BeliefAgent::act(std::span<const Lane> lanes, std::span<const Point> shown,
   for (std::size_t k = 0; k < lanes.size(); ++k) {
     const auto l = static_cast<std::size_t>(lanes[k]);
     if (random_actions_ > 0 && streams[l].chance(random_actions_)) actions[k] = streams[l].below(choices);
-    last_[l] = actions[k];
+  }
+  remember(lanes, actions);
+}
+
+void BeliefAgent::remember(std::span<const Lane> lanes, std::span<const Action> actions) {
+  const torch::Tensor& held = acted_on_.states;
+  const bool places = held.dim() == 3 && held.size(2) == 2;
+  torch::Tensor mean, low, high;
+  if (places) {
+    mean = torch::bmm(acted_on_.weights.unsqueeze(1), held).squeeze(1);
+    low = held.amin(1);
+    high = held.amax(1);
+  }
+  const std::vector<Point> means = places ? to_points(mean) : std::vector<Point>(lanes.size());
+  const std::vector<Point> lows = places ? to_points(low) : means, highs = places ? to_points(high) : means;
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    minds_[static_cast<std::size_t>(lanes[k])] = {
+        true, actions[k], means[k], {lows[k].x, highs[k].x, lows[k].y, highs[k].y}};
   }
 }
 

@@ -26,6 +26,9 @@ class BeliefAgent final : public GridAgent {
            std::span<Action> actions) override;
   void would_do(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Action> actions) const override;
 
+  /// Of a belief over places; of other beliefs (images) only the last action is told.
+  Mind mind(Lane lane) const override { return minds_[static_cast<std::size_t>(lane)]; }
+
   /// The values by which `would_do` chooses, [n, actions].
   torch::Tensor would_value(std::span<const Lane> lanes, std::span<const Point> shown) const;
 
@@ -38,10 +41,11 @@ class BeliefAgent final : public GridAgent {
   const LaneBelief& belief() const { return *belief_; }
   const AnyAggregator& aggregator() const { return aggregator_; }
   /// The lane's last action, which its next belief takes into account.
-  Action last_action(Lane lane) const { return last_[static_cast<std::size_t>(lane)]; }
+  Action last_action(Lane lane) const { return minds_[static_cast<std::size_t>(lane)].last_action; }
 
  private:
   torch::Tensor values(const BeliefStates& belief) const;
+  void remember(std::span<const Lane> lanes, std::span<const Action> actions);
   std::vector<Action> last_of(std::span<const Lane> lanes) const;
 
   std::shared_ptr<ActionValueModule> q_;
@@ -49,7 +53,7 @@ class BeliefAgent final : public GridAgent {
   AnyAggregator aggregator_;
   double random_actions_;
   BeliefStates acted_on_;
-  std::vector<Action> last_;
+  std::vector<Mind> minds_;
 };
 
 }  // namespace maximin::deep

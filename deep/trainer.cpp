@@ -229,7 +229,10 @@ CurvePoint Trainer::stretch() {
   long updates = 0, looks = 0, held = 0;
   double area = 0;
   begin_lanes();
-  const long ticks = std::max(1L, std::min(options_.stretch_frames, options_.frames - frames_) / options_.lanes);
+  // What would be less than half a stretch belongs to the one before it.
+  const long left = options_.frames - frames_;
+  const long wanted = 2 * left < 3 * options_.stretch_frames ? left : options_.stretch_frames;
+  const long ticks = (wanted + options_.lanes - 1) / options_.lanes;
   for (long tick = 0; tick < ticks; ++tick) {
     agent_->set_random_actions(exploration());
     look(all_lanes_);

@@ -20,6 +20,7 @@ void add_attack_options(CLI::App& sub, AttackedAgent& o) {
   sub.add_option("--random-actions", o.random_actions, "Share of random actions, in place of its own")
       ->check(real_number({.low = 0, .high = 1}));
   sub.add_option("--attack-seed", o.attack_seed, "Seed of a learned attack's training")->check(seed_number());
+  sub.add_option("--attacker", o.attacker, "File of a learned attack: read where it exists, else written");
   sub.add_flag("--quick", o.quick, "Learned attacks learn for seconds");
 }
 
@@ -48,6 +49,7 @@ Match prepare_match(const AttackedAgent& o) {
   setting.eps = match.eps;
   setting.seed = o.attack_seed;
   setting.quick = o.quick;
+  setting.file = o.attacker;
   match.attack = deep::make_attack(setting, target);
   return match;
 }

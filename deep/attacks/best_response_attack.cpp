@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <maximin/deep/attacks/ball_places.hpp>
 #include <maximin/deep/tensors.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -16,13 +17,8 @@ BestResponseAttack::BestResponseAttack(std::shared_ptr<ActionValueModule> judge,
 }
 
 void BestResponseAttack::candidates(Point truth, Stream& rng, std::vector<Point>& out) const {
-  const auto along = [&](double v, int i) {
-    return ball_.low(v) + (ball_.high(v) - ball_.low(v)) * i / (options_.grid - 1);
-  };
   for (int i = 0; i < options_.grid; ++i) {
-    for (int j = 0; j < options_.grid; ++j) {
-      out.push_back(ball_.project(truth, {along(truth.x, i), along(truth.y, j)}));
-    }
+    for (int j = 0; j < options_.grid; ++j) out.push_back(grid_place(ball_, truth, options_.grid, i, j));
   }
   for (int i = 0; i < options_.random; ++i) out.push_back(ball_.draw(truth, rng));
 }

@@ -3,26 +3,10 @@
 #include <limits>
 #include <utility>
 
+#include <maximin/deep/attacks/ball_places.hpp>
 #include <maximin/deep/tensors.hpp>
 
 namespace maximin::deep {
-namespace {
-
-/// Where the true states may be shown, per coordinate: [n, 2] each.
-struct Bounds {
-  torch::Tensor low, high;
-};
-
-Bounds bounds_of(std::span<const Point> truths, const ObservationBall& ball) {
-  std::vector<Point> low, high;
-  for (const Point& s : truths) {
-    low.push_back({ball.low(s.x), ball.low(s.y)});
-    high.push_back({ball.high(s.x), ball.high(s.y)});
-  }
-  return {to_tensor(low), to_tensor(high)};
-}
-
-}  // namespace
 
 GradientAttack::GradientAttack(std::shared_ptr<ActionValueModule> q, const ObservationBall& ball,
                                const GradientAttackOptions& options)
@@ -62,8 +46,7 @@ torch::Tensor GradientAttack::starts(std::span<const Lane> lanes, std::span<cons
 void GradientAttack::perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent&,
                              std::span<Stream> streams, std::span<Point> shown) {
   const torch::Device device = q_->parameters().front().device();
-  Bounds bounds = bounds_of(truths, ball_);
-  bounds = {bounds.low.to(device), bounds.high.to(device)};
+  const BallBounds bounds(truths, ball_, device);
   torch::Tensor q_truth, best;
   {
     torch::NoGradGuard no_grad;
@@ -83,7 +66,7 @@ void GradientAttack::perturb(std::span<const Lane> lanes, std::span<const Point>
   for (int start = 0; start < options_.starts; ++start) {
     torch::Tensor at = starts(lanes, truths, streams).to(device);
     for (int i = 0; i <= options_.steps; ++i) {
-      at = torch::maximum(torch::minimum(at, bounds.high), bounds.low).detach().set_requires_grad(i < options_.steps);
+      at = bounds.clamp(at).detach().set_requires_grad(i < options_.steps);
       const torch::Tensor q_at = q_->forward(at);
       if (options_.keep_best || i == options_.steps) consider(at.detach(), q_at.detach());
       if (i == options_.steps) break;

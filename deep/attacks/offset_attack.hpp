@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <maximin/deep/agent.hpp>
@@ -7,19 +8,40 @@
 
 namespace maximin::deep {
 
-/// Shows a corner of the ball, drawn once for an episode: the agent is deceived by the same offset all the time, so
-/// that what is shown tells a set belief nothing that it did not know.
+/// A corner of the ball of observations: bit 0 is right, bit 1 is up.
+enum class Corner { lower_left, lower_right, upper_left, upper_right };
+
+/// What becomes of the corner from step to step.
+enum class CornerChange {
+  never,     ///< every observation has the same error: none tells a set belief what the one before did not
+  opposite,  ///< the opposite corner at every step
+  drawn,     ///< one of the four, drawn anew at every step
+};
+
+struct OffsetOptions {
+  std::optional<Corner> corner;  ///< that of the first step; without it one is drawn per episode
+  CornerChange change = CornerChange::never;
+};
+
+/// Shows a corner of the ball. It looks at nothing but the truth; yet an offset that stays deceives the agent all the
+/// time, and what is shown tells a set belief nothing that it did not know. Takes one number of a lane's stream where
+/// it draws.
 class ConstantOffsetAttack final : public GridAttack {
  public:
-  explicit ConstantOffsetAttack(const ObservationBall& ball) : ball_(ball) {}
-  void resize(Lane lanes) override { corner_.assign(static_cast<std::size_t>(lanes), -1); }
-  void forget(Lane lane) override { corner_[static_cast<std::size_t>(lane)] = -1; }
+  explicit ConstantOffsetAttack(const ObservationBall& ball, const OffsetOptions& options = {})
+      : ball_(ball), options_(options) {}
+
+  void resize(Lane lanes) override { corners_.assign(static_cast<std::size_t>(lanes), std::nullopt); }
+  void forget(Lane lane) override { corners_[static_cast<std::size_t>(lane)].reset(); }
   void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                std::span<Stream> streams, std::span<Point> shown) override;
 
  private:
+  Corner next(std::optional<Corner> last, Stream& rng) const;
+
   ObservationBall ball_;
-  std::vector<int> corner_;  // 0 to 3; -1 before the first observation
+  OffsetOptions options_;
+  std::vector<std::optional<Corner>> corners_;  ///< of the lane's last observation
 };
 
 }  // namespace maximin::deep

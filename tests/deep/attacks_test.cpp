@@ -1,0 +1,319 @@
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <maximin/deep/attacks/adaptive_director.hpp>
+#include <maximin/deep/attacks/ball_places.hpp>
+#include <maximin/deep/attacks/best_response_attack.hpp>
+#include <maximin/deep/attacks/gradient_attack.hpp>
+#include <maximin/deep/attacks/mixed_attack.hpp>
+#include <maximin/deep/attacks/offset_attack.hpp>
+#include <maximin/deep/attacks/pa_ad_attack.hpp>
+#include <maximin/deep/attacks/simple_attacks.hpp>
+#include <maximin/deep/attacks/targeted_search.hpp>
+#include <maximin/deep/attacks/through_defence_attack.hpp>
+#include <maximin/deep/belief_agent.hpp>
+#include <maximin/deep/set_beliefs.hpp>
+#include <maximin/deep/tensors.hpp>
+#include <maximin/theory/error.hpp>
+
+#include "tiny_networks.hpp"
+
+namespace maximin::deep {
+namespace {
+
+struct Case {
+  std::string name;
+  std::shared_ptr<GridAttack> attack;
+};
+
+QNetworkPtr small_network(std::uint64_t seed) {
+  Stream rng(seed);
+  return random_network({.hidden = {32, 32}, .waves = 2}, rng, torch::kFloat, 2.5);
+}
+
+/// Every attack there is, on this network.
+std::vector<Case> all_attacks(const QNetworkPtr& q, const ObservationBall& ball) {
+  std::vector<Case> all;
+  all.push_back({"random", std::make_shared<RandomAttack>(ball)});
+  for (const CornerChange change : {CornerChange::never, CornerChange::opposite, CornerChange::drawn}) {
+    all.push_back({"offset", std::make_shared<ConstantOffsetAttack>(ball, OffsetOptions{std::nullopt, change})});
+  }
+  for (const auto objective : {AttackObjective::value, AttackObjective::cross_entropy, AttackObjective::min_best}) {
+    GradientAttackOptions options;
+    options.objective = objective;
+    all.push_back({"gradient", std::make_shared<GradientAttack>(q, ball, options)});
+    options.keep_best = false;
+    options.released_start = true;
+    all.push_back({"gradient, as released", std::make_shared<GradientAttack>(q, ball, options)});
+  }
+  all.push_back({"best response", std::make_shared<BestResponseAttack>(q, ball, BestResponseOptions{})});
+  all.push_back({"through defence", std::make_shared<ThroughDefenceAttack>(q, ball)});
+  PaAdOptions pa_ad;
+  all.push_back({"pa-ad", std::make_shared<PaAdAttack>(q, ball, pa_ad)});
+  pa_ad.actor.method = SearchMethod::pgd;
+  all.push_back({"pa-ad, pgd", std::make_shared<PaAdAttack>(q, ball, pa_ad)});
+  all.push_back({"adaptive director", std::make_shared<AdaptiveDirector>(q, ball)});
+  std::vector<MixedAttack::Part> parts{{std::make_shared<RandomAttack>(ball), 1},
+                                       {std::make_shared<ConstantOffsetAttack>(ball), 2}};
+  all.push_back({"mixed", std::make_shared<MixedAttack>(std::move(parts))});
+  return all;
+}
+
+/// Places where balls are cut: corners and edges of the world, and some in its middle.
+std::vector<Point> delicate_places() {
+  const double last = gridworld::side - gridworld::quantum;
+  std::vector<Point> places;
+  for (const double x : {0.0, 0.03125, 4.5, last}) {
+    for (const double y : {0.0, 5.25, 9.96875, last}) places.push_back({x, y});
+  }
+  return places;
+}
+
+/// A few steps in which the truth stays where it is.
+std::vector<Point> shown_by(GridAttack& attack, GridAgent& agent, const std::vector<Point>& truths,
+                            std::uint64_t seed) {
+  std::vector<Lane> lanes;
+  std::vector<Stream> streams;
+  for (std::size_t l = 0; l < truths.size(); ++l) {
+    lanes.push_back(static_cast<Lane>(l));
+    streams.emplace_back(seed, l);
+  }
+  agent.resize(static_cast<Lane>(lanes.size()));
+  attack.resize(static_cast<Lane>(lanes.size()));
+  std::vector<Point> shown(truths.size()), all;
+  std::vector<Action> actions(truths.size());
+  for (int step = 0; step < 3; ++step) {
+    attack.perturb(lanes, truths, agent, streams, shown);
+    agent.act(lanes, shown, streams, actions);
+    all.insert(all.end(), shown.begin(), shown.end());
+  }
+  return all;
+}
+
+BeliefAgent agent_of(const QNetworkPtr& q, const ObservationBall& ball, const std::string& aggregator) {
+  return BeliefAgent(q, std::make_shared<SetBeliefs>(SetBelief::exact, ball, 8), aggregator_named(aggregator));
+}
+
+/// Shows a place just outside the ball.
+class Trespasser final : public GridAttack {
+ public:
+  explicit Trespasser(double aside) : aside_(aside) {}
+  void perturb(std::span<const Lane>, std::span<const Point> truths, const GridAgent&, std::span<Stream>,
+               std::span<Point> shown) override {
+    for (std::size_t k = 0; k < truths.size(); ++k) shown[k] = {truths[k].x + aside_, truths[k].y};
+  }
+
+ private:
+  double aside_;
+};
+
+TEST(Attacks, KeepToBallAndWorldAndToTheirStreams) {
+  for (const double eps : {0.0, 0.1, 0.5}) {
+    const ObservationBall ball(eps);
+    const QNetworkPtr q = small_network(3);
+    BeliefAgent agent = agent_of(q, ball, "mean");
+    for (const Case& one : all_attacks(q, ball)) {
+      SCOPED_TRACE(one.name);
+      WithinBallInStep within(*one.attack, ball);
+      const std::vector<Point> first = shown_by(within, agent, delicate_places(), 5);
+      EXPECT_EQ(first, shown_by(within, agent, delicate_places(), 5));
+      const bool draws = one.name == "random" || one.name == "gradient";
+      if (eps > 0 && draws) {
+        EXPECT_NE(first, shown_by(within, agent, delicate_places(), 6));
+      }
+    }
+    for (const double aside : {eps + gridworld::quantum, -eps - gridworld::quantum, 1e-14}) {
+      Trespasser outside(aside);
+      WithinBallInStep within(outside, ball);
+      EXPECT_THROW(shown_by(within, agent, {{5, 5}}, 1), std::logic_error) << aside;
+    }
+  }
+}
+
+TEST(Attacks, OffsetsStayOrChangeAsNamed) {
+  const ObservationBall ball(0.25);
+  BeliefAgent agent = agent_of(small_network(3), ball, "mean");
+  const std::vector<Point> truths{{5, 5}, {4.5, 5}, {5, 4.5}, {4, 5}, {3, 5}, {2, 5}};
+  const auto offsets = [&](const OffsetOptions& options) {
+    ConstantOffsetAttack attack(ball, options);
+    std::vector<Point> shown = shown_by(attack, agent, truths, 9);
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+      const Point s = truths[k % truths.size()];
+      shown[k] = {shown[k].x - s.x, shown[k].y - s.y};
+    }
+    return shown;
+  };
+  const auto at = [&](const std::vector<Point>& all, int step, std::size_t lane) {
+    return all[static_cast<std::size_t>(step) * truths.size() + lane];
+  };
+  const auto constant = offsets({}), opposite = offsets({std::nullopt, CornerChange::opposite});
+  const auto drawn = offsets({std::nullopt, CornerChange::drawn});
+  bool lanes_differ = false, steps_differ = false;
+  for (std::size_t lane = 0; lane < truths.size(); ++lane) {
+    const Point first = at(constant, 0, lane);
+    EXPECT_EQ(std::abs(first.x), ball.eps());
+    EXPECT_EQ(std::abs(first.y), ball.eps());
+    EXPECT_EQ(first, at(constant, 2, lane));
+    EXPECT_EQ(at(opposite, 0, lane), first);
+    EXPECT_EQ(at(opposite, 1, lane), (Point{-first.x, -first.y}));
+    EXPECT_EQ(at(opposite, 2, lane), first);
+    lanes_differ |= !(first == at(constant, 0, 0));
+    steps_differ |= !(at(drawn, 0, lane) == at(drawn, 1, lane));
+  }
+  EXPECT_TRUE(lanes_differ);
+  EXPECT_TRUE(steps_differ);
+  for (const Point& p : offsets({Corner::upper_left})) EXPECT_EQ(p, (Point{-ball.eps(), ball.eps()}));
+}
+
+/// What the judge says of the action that is provoked by each of these observations of the truth.
+std::vector<double> provoked_values(const BeliefAgent& agent, QNetwork& judge, Lane lane, Point truth,
+                                    const std::vector<Point>& shown) {
+  torch::NoGradGuard no_grad;
+  const std::vector<Lane> lanes(shown.size(), lane);
+  std::vector<Action> actions(shown.size());
+  agent.would_do(lanes, shown, actions);
+  const torch::Tensor q = judge.forward(to_tensor(std::vector<Point>{truth}));
+  std::vector<double> values;
+  for (const Action a : actions) values.push_back(q[0][a].item<double>());
+  return values;
+}
+
+std::vector<Point> whole_grid(const ObservationBall& ball, Point truth, int n) {
+  std::vector<Point> places;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) places.push_back(grid_place(ball, truth, n, i, j));
+  }
+  return places;
+}
+
+std::vector<Point> places_in_the_open(int count) {
+  const ContinuousGridworld world;
+  Stream rng(77);
+  std::vector<Point> places;
+  for (int i = 0; i < count; ++i) places.push_back(world.reset(rng));
+  return places;
+}
+
+/// Mean over the lanes of the value of the action that the attack provokes at once.
+double mean_provoked(GridAttack& attack, const BeliefAgent& agent, QNetwork& judge, const std::vector<Point>& truths) {
+  std::vector<Lane> lanes;
+  std::vector<Stream> streams;
+  for (std::size_t l = 0; l < truths.size(); ++l) {
+    lanes.push_back(static_cast<Lane>(l));
+    streams.emplace_back(4, l);
+  }
+  attack.resize(static_cast<Lane>(lanes.size()));
+  std::vector<Point> shown(truths.size());
+  attack.perturb(lanes, truths, agent, streams, shown);
+  double sum = 0;
+  for (std::size_t l = 0; l < truths.size(); ++l) {
+    sum += provoked_values(agent, judge, lanes[l], truths[l], {shown[l]})[0];
+  }
+  return sum / static_cast<double>(truths.size());
+}
+
+TEST(Attacks, AreAsStrongInOneStepAsTheyClaim) {
+  const ObservationBall ball(0.4);
+  const QNetworkPtr q = small_network(11);
+  const std::vector<Point> truths = places_in_the_open(60);
+  BeliefAgent greedy(q, std::make_shared<ObservedState>(), MeanAggregator{});
+  BeliefAgent defended = agent_of(q, ball, "min");
+  for (BeliefAgent* agent : {&greedy, &defended}) {
+    // One step of belief first, so that the defence has something to remember.
+    RandomAttack random(ball);
+    shown_by(random, *agent, truths, 21);
+    double least = 0;
+    for (std::size_t l = 0; l < truths.size(); ++l) {
+      const auto all = provoked_values(*agent, *q, static_cast<Lane>(l), truths[l], whole_grid(ball, truths[l], 41));
+      least += *std::min_element(all.begin(), all.end()) / static_cast<double>(truths.size());
+    }
+    const auto provoked = [&](GridAttack&& attack) { return mean_provoked(attack, *agent, *q, truths); };
+    const double none = provoked(NoAttack()), by_chance = provoked(RandomAttack(ball));
+    const double pgd = provoked(GradientAttack(q, ball, {}));
+    const double best_response = provoked(BestResponseAttack(q, ball, {21, 0}));
+    const double through = provoked(ThroughDefenceAttack(q, ball));
+    // The fine grid may itself miss a sliver of the ball: hence 0.01 of the span.
+    const double slack = 0.01 * (none - least);
+    ASSERT_LT(least, none - 0.1);
+    EXPECT_GE(best_response, least - slack);
+    EXPECT_GE(through, least - slack);
+    EXPECT_GE(pgd, least - slack);
+    EXPECT_LE(best_response, least + 0.05 * (none - least));
+    EXPECT_LE(best_response, pgd + slack);
+    EXPECT_LT(through, by_chance);
+    EXPECT_LE(through, least + 0.35 * (none - least));
+    // PGD knows the network, not the defence.
+    if (agent == &greedy) {
+      EXPECT_LT(pgd, by_chance);
+    }
+  }
+}
+
+TEST(Attacks, TargetedSearchProvokesWhatCanBeProvoked) {
+  const ObservationBall ball(0.4);
+  const QNetworkPtr q = small_network(12);
+  const std::vector<Point> truths = places_in_the_open(30);
+  BeliefAgent greedy(q, std::make_shared<ObservedState>(), MeanAggregator{});
+  greedy.resize(static_cast<Lane>(truths.size()));
+  std::vector<Lane> lanes;
+  std::vector<Stream> streams;
+  for (std::size_t l = 0; l < truths.size(); ++l) {
+    lanes.push_back(static_cast<Lane>(l));
+    streams.emplace_back(4, l);
+  }
+  for (const SearchMethod method : {SearchMethod::grid, SearchMethod::pgd}) {
+    TargetedSearchOptions options;
+    options.method = method;
+    const TargetedSearch search(q, ball, options);
+    int possible = 0, hit = 0, impossible_hit = 0;
+    for (Action target = 0; target < ContinuousGridworld::actions; ++target) {
+      const std::vector<int> targets(truths.size(), target);
+      std::vector<Point> found(truths.size());
+      std::vector<Action> done(truths.size());
+      search.find(lanes, truths, targets, streams, found);
+      greedy.would_do(lanes, found, done);
+      for (std::size_t l = 0; l < truths.size(); ++l) {
+        const auto grid = whole_grid(ball, truths[l], 41);
+        std::vector<Action> answers(grid.size());
+        greedy.would_do(std::vector<Lane>(grid.size(), lanes[l]), grid, answers);
+        const bool can = std::find(answers.begin(), answers.end(), target) != answers.end();
+        possible += can;
+        hit += can && done[l] == target;
+        impossible_hit += !can && done[l] == target;
+      }
+    }
+    ASSERT_GT(possible, static_cast<int>(truths.size()));
+    EXPECT_GE(hit, (method == SearchMethod::grid ? 0.9 : 0.5) * possible);
+    EXPECT_LE(impossible_hit, 0.02 * possible + 1);
+  }
+}
+
+TEST(Attacks, BadOptionsAreNamed) {
+  const ObservationBall ball(0.1);
+  const QNetworkPtr q = small_network(1);
+  EXPECT_THROW(TargetedSearch(q, ball, {.grid = 1}), InputError);
+  EXPECT_THROW(ThroughDefenceAttack(q, ball, {.starts = 0}), InputError);
+  EXPECT_THROW(AdaptiveDirector(q, ball, {.grid = 1}), InputError);
+  PaAdOptions no_time;
+  no_time.director.horizon = 0;
+  EXPECT_THROW(PaAdAttack(q, ball, no_time), InputError);
+  EXPECT_THROW(MixedAttack({}), std::invalid_argument);
+  // Descent through a defence needs one.
+  class Blind final : public GridAgent {
+    void resize(Lane) override {}
+    void forget(Lane) override {}
+    void act(std::span<const Lane>, std::span<const Point>, std::span<Stream>, std::span<Action>) override {}
+    void would_do(std::span<const Lane>, std::span<const Point>, std::span<Action>) const override {}
+  };
+  Blind blind;
+  ThroughDefenceAttack through(q, ball);
+  EXPECT_THROW(shown_by(through, blind, {{5, 5}}, 1), InputError);
+}
+
+}  // namespace
+}  // namespace maximin::deep
