@@ -34,8 +34,9 @@ torch::Tensor of(const SoftMinAggregator& soft, const torch::Tensor& q, const to
   const torch::Tensor w = weights.unsqueeze(-1).to(torch::kDouble);
   const torch::Tensor values = q.to(torch::kDouble).masked_fill(w <= 0, std::numeric_limits<double>::infinity());
   const torch::Tensor least = values.amin(1, true);
-  const torch::Tensor sum = (w * torch::exp((values - least) * -soft.beta())).sum(1);
-  return (least.squeeze(1) - sum.log() / soft.beta()).to(q.scalar_type());
+  // Weights that are floats sum to 1 but nearly, and a small beta would make much of that.
+  const torch::Tensor mean = (w * torch::exp((values - least) * -soft.beta())).sum(1) / w.sum(1);
+  return (least.squeeze(1) - mean.log() / soft.beta()).to(q.scalar_type());
 }
 
 // The worst values first, each with the part of its weight that still fits into alpha.
