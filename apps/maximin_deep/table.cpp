@@ -155,6 +155,7 @@ class TableMaker {
     if (!cell.belief.empty()) ready.acting.belief = cell.belief;
     if (!cell.aggregator.empty()) ready.acting.aggregator = cell.aggregator;
     if (!cell.belief.empty()) ready.acting.belief_states = 32;
+    if (cell.random_actions >= 0) ready.acting.random_actions = cell.random_actions;
     // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
     if (!spec.knows_eps()) ready.trained.spec.eps = cell.attack_eps;
     ready.agent = deep::make_agent(ready.trained, ready.acting);
@@ -165,8 +166,9 @@ class TableMaker {
     setting.eps = cell.attack_eps;
     setting.seed = seed;
     setting.quick = command_.quick;
-    setting.file = command_.folder / fmt::format("{}-{}{}-{}-eps{:g}.attacker", spec.name(), ready.acting.belief,
-                                                 cell.aggregator, cell.attack, cell.attack_eps);
+    setting.file = command_.folder / fmt::format("{}-{}-{}-random{:g}-{}-eps{:g}.attacker", spec.name(),
+                                                 ready.acting.belief, ready.acting.aggregator,
+                                                 ready.acting.random_actions, cell.attack, cell.attack_eps);
     setting.progress = [this, &cell](double share, double) {
       line_.say(fmt::format("{} / {} {:g}: learns, {:.0f} %", cell.cell.agent, cell.cell.attack, cell.attack_eps,
                             100 * share));

@@ -82,7 +82,7 @@ const std::vector<NamedAttack>& named_attacks() {
   static const std::vector<NamedAttack> attacks{
       {"none", "natural", false, false},
       {"random", "random", false, false},
-      {"constant-offset", "constant offset", false, false},
+      {"constant-offset", "constant offset", true, false},
       {"pgd", "PGD", false, false},
       {"pgd-released", "PGD, cross-entropy", false, false},
       {"min-best", "MinBest", false, false},
