@@ -33,6 +33,7 @@ Match prepare_match(const AttackedAgent& o) {
   if (!spec.knows_eps()) spec.eps = match.eps;
   match.acting = deep::acting_of(spec);
   if (!o.belief.empty()) match.acting.belief = o.belief;
+  if (!o.belief.empty() && o.belief != spec.belief) match.acting.belief_states = 32;  // as in the table's ablation
   if (!o.aggregator.empty()) match.acting.aggregator = o.aggregator;
   if (o.random_actions >= 0) match.acting.random_actions = o.random_actions;
   match.agent = deep::make_agent(*match.trained, match.acting);

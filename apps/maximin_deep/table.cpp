@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -33,15 +34,16 @@ struct TableCommand {
   fs::path folder = "runs";
   fs::path output = "results";
   int seeds = 3;
-  std::uint64_t first_seed = 0;  ///< 0: 1 for the table, 101 for the choice of an aggregator
+  std::optional<std::uint64_t> first_seed;  ///< unless given: 1 for the table, 101 for the choice of an aggregator
   long episodes = 100;
   std::vector<std::string> only;
   int jobs = 1;
   bool quick = false;
+  long frames = 0;  ///< of each training; 0: what the recipes say
 
+  deep::Effort effort() const { return {quick, frames}; }
   std::uint64_t seed(int k) const {
-    const std::uint64_t first = first_seed > 0 ? first_seed : kind == "aggregators" ? 101 : 1;
-    return first + static_cast<std::uint64_t>(k);
+    return first_seed.value_or(kind == "aggregators" ? 101 : 1) + static_cast<std::uint64_t>(k);
   }
 };
 
@@ -69,11 +71,13 @@ class TableMaker {
     table.version = MAXIMIN_VERSION;
     table.command = fmt::format("maximin_deep table {} --seeds {} --episodes {}{}", command_.kind, command_.seeds,
                                 command_.episodes, command_.quick ? " --quick" : "");
+    if (command_.frames > 0) table.command += fmt::format(" --frames {}", command_.frames);
     table.configuration["episodes"] = command_.episodes;
     table.configuration["quick"] = command_.quick;
+    if (command_.frames > 0) table.configuration["frames"] = command_.frames;
     std::set<std::string> kinds;
     for (const PlannedCell& cell : plan_) {
-      const deep::AgentSpec spec = spec_of(cell, command_.seed(0), command_.quick);
+      const deep::AgentSpec spec = spec_of(cell, command_.seed(0), command_.effort());
       if (kinds.insert(spec.name()).second) table.configuration["agents"][spec.name()] = deep::to_json(spec);
       deep::ResultBlock* block = table.find(cell.block);
       if (!block) block = &table.blocks.emplace_back(deep::ResultBlock{cell.block, "", {}});
@@ -88,9 +92,9 @@ class TableMaker {
     std::set<std::string> names;
     for (int k = 0; k < command_.seeds; ++k) {
       for (const PlannedCell& cell : plan_) {
-        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.quick);
+        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.effort());
         add_training(first, spec, specs, names);
-        const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, command_.seed(k), command_.quick);
+        const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, command_.seed(k), command_.effort());
         add_training(first, vanilla, specs, names);
       }
     }
@@ -98,7 +102,7 @@ class TableMaker {
     std::vector<std::function<void()>> jobs;
     for (const deep::AgentSpec& spec : specs) {
       jobs.emplace_back([&, spec] {
-        deep::train_agent(spec, command_.folder, torch::kCPU, command_.quick, line_.hooks(stop_));
+        deep::train_agent(spec, command_.folder, torch::kCPU, command_.effort(), line_.hooks(stop_));
         line_.say("");
         line_.done(++done, static_cast<long>(specs.size()));
       });
@@ -146,7 +150,7 @@ class TableMaker {
 
   /// The agent of a cell and the attack on it. Its attack is empty where it was interrupted.
   Ready prepare(const PlannedCell& cell, std::uint64_t seed) {
-    const deep::AgentSpec spec = spec_of(cell, seed, command_.quick);
+    const deep::AgentSpec spec = spec_of(cell, seed, command_.effort());
     Ready ready{deep::read_agent(agent_file(spec)), deep::acting_of(spec), nullptr, nullptr};
     if (!cell.belief.empty()) ready.acting.belief = cell.belief;
     if (!cell.aggregator.empty()) ready.acting.aggregator = cell.aggregator;
@@ -154,7 +158,7 @@ class TableMaker {
     // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
     if (!spec.knows_eps()) ready.trained.spec.eps = cell.attack_eps;
     ready.agent = deep::make_agent(ready.trained, ready.acting);
-    const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, seed, command_.quick);
+    const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, seed, command_.effort());
     const deep::AttackTarget target{&ready.trained, ready.acting, deep::read_agent(agent_file(vanilla)).values()};
     deep::AttackSetting setting;
     setting.name = cell.attack;
@@ -191,7 +195,7 @@ class TableMaker {
     std::set<std::string> names;
     for (int k = 0; k < command_.seeds; ++k) {
       for (const PlannedCell& cell : plan_) {
-        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.quick);
+        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.effort());
         const fs::path log = command_.folder / (spec.name() + ".csv");
         if (!names.insert(spec.name()).second || !fs::exists(log)) continue;
         const std::string title = spec.knows_eps() ? fmt::format("{} {:g}", cell.kind, spec.eps) : cell.kind;
@@ -243,8 +247,8 @@ int make_table(const TableCommand& command) {
   }
   if (plan.empty()) throw InputError("--only: names no agent of the table, expected e.g. dqn");
   if (command.quick) note("--quick: everything in small, to see that it works; the numbers mean nothing");
-  fs::create_directories(command.folder);
-  fs::create_directories(command.output);
+  make_folder(command.folder);
+  make_folder(command.output);
   return TableMaker(command, std::move(plan)).run();
 }
 
@@ -271,6 +275,8 @@ void add_table(CLI::App& app, Task& task) {
       ->check(whole_number(1, 256))
       ->capture_default_str();
   sub->add_flag("--quick", command->quick, "About two minutes, to see it work");
+  sub->add_option("--frames", command->frames, "So many frames of each training, in place of the recipes'")
+      ->check(whole_number(1, 1'000'000'000));
   sub->footer(
       "A table that was cut goes on where it stopped.\n"
       "Examples:\n"

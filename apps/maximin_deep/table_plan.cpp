@@ -138,8 +138,8 @@ std::vector<std::string> attacks_where(bool adaptive) {
 
 }  // namespace
 
-deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, bool quick) {
-  deep::AgentSpec spec = deep::recipe(cell.kind, cell.trained_eps, seed, quick);
+deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, const deep::Effort& effort) {
+  deep::AgentSpec spec = deep::recipe(cell.kind, cell.trained_eps, seed, effort);
   if (!cell.config.empty()) deep::merge_json(spec, nlohmann::ordered_json::parse(cell.config), "plan");
   return spec;
 }

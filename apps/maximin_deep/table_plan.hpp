@@ -23,7 +23,7 @@ struct PlannedCell {
 };
 
 /// What is to be trained for a cell.
-deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, bool quick);
+deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, const deep::Effort& effort);
 
 /// The paper's table of the continuous Gridworld, its ablation and its noisy environment, each with adaptive attacks
 /// beside; and, to choose BP-DQN's aggregator before that table is seen, `aggregators`, on other seeds.
