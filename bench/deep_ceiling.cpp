@@ -31,6 +31,7 @@
 ///     diagonal=nearest  or interpolated (random, right on average)
 ///     belief=, aggregator=   in the place of the agents' own: observed, ball or exact; min, mean, soft-min:B, cvar:A
 ///     positions=2000000      of (truth, belief), before the exact worst case of an agent with memory is given up
+///     beliefs=2000000        before what an agent can be sure of is given up; 0: not asked
 ///     rounds=4               episodes from every start for attacks that draw
 ///     attacks=yes            the deep layer's attacks too, but for those that ask the agent for more than its answers
 ///     learned=no             or quick, or full: learned attacks too, taught in the continuous world, for seconds or
@@ -45,7 +46,7 @@ namespace {
 struct Settings {
   GridworldLatticeOptions lattice;
   std::string belief, aggregator;
-  long positions = 2'000'000, rounds = 4;
+  long positions = 2'000'000, beliefs = 2'000'000, rounds = 4;
   bool attacks = true;
   std::string learned = "no";
   std::vector<std::filesystem::path> files;
@@ -72,6 +73,8 @@ Settings parse(int argc, char** argv) {
       s.aggregator = value;
     } else if (name == "positions") {
       s.positions = std::atol(value.c_str());
+    } else if (name == "beliefs") {
+      s.beliefs = std::atol(value.c_str());
     } else if (name == "rounds") {
       s.rounds = std::atol(value.c_str());
     } else if (name == "attacks") {
@@ -80,7 +83,8 @@ Settings parse(int argc, char** argv) {
       s.learned = value;
     } else {
       throw InputError(fmt::format(
-          "{}: expected steps, eps, diagonal, belief, aggregator, positions, rounds, attacks or learned", text));
+          "{}: expected steps, eps, diagonal, belief, aggregator, positions, beliefs, rounds, attacks or learned",
+          text));
     }
   }
   return s;
@@ -114,7 +118,7 @@ void print(const std::string& what, const Line& total, const Line& discounted, c
   std::fflush(stdout);
 }
 
-void report_world(const LatticeWorld& world) {
+void report_world(const LatticeWorld& world, long max_beliefs) {
   const auto& o = world.options();
   fmt::print("lattice of spacing {:.4f}, {} states, eps {:.4f}, largest ball {}, diagonals {}\n", o.spacing,
              world.mdp().states(), o.eps, world.balls().largest_ball(),
@@ -122,7 +126,7 @@ void report_world(const LatticeWorld& world) {
   const auto clean = policy_iteration(world.mdp());
   print("optimal without attack", over_starts(world, optimal_in_steps(world.mdp(), 100).with_all_steps()),
         over_starts(world, clean.v), "");
-  constexpr long max_beliefs = 5'000'000;
+  if (max_beliefs == 0) return;
   try {
     const Clock clock;
     const auto total = guaranteed_value(world.mdp(), world.balls(), {.steps = 100, .max_beliefs = max_beliefs});
@@ -202,7 +206,7 @@ int main(int argc, char** argv) {
   try {
     const Settings settings = parse(argc, argv);
     const LatticeWorld world(settings.lattice);
-    report_world(world);
+    report_world(world, settings.beliefs);
     for (const auto& file : settings.files) report_agent(world, file, settings);
   } catch (const maximin::InputError& e) {
     fmt::print(stderr, "deep_ceiling: {}\n", e.what());

@@ -12,6 +12,7 @@
 
 #include <torch/torch.h>
 
+#include <maximin/deep/attacks/adaptive_director.hpp>
 #include <maximin/deep/attacks/best_response_attack.hpp>
 #include <maximin/deep/attacks/gradient_attack.hpp>
 #include <maximin/deep/attacks/offset_attack.hpp>
@@ -71,6 +72,13 @@ std::vector<Attacker> deep_attacks(const std::shared_ptr<ActionValueModule>& q,
     options.step_share = 0.2;
     return std::make_shared<GradientAttack>(q, ball, options);
   };
+  const auto director = [&](Director::Play play) {
+    AdaptiveDirectorOptions options;
+    options.grid = 3;
+    auto untaught = std::make_shared<AdaptiveDirector>(judge, ball, options);
+    untaught->set_play(play);
+    return untaught;
+  };
   return {
       {"none", std::make_shared<NoAttack>(), 1},
       {"random", std::make_shared<RandomAttack>(ball), 2},
@@ -78,6 +86,8 @@ std::vector<Attacker> deep_attacks(const std::shared_ptr<ActionValueModule>& q,
       {"PGD", gradient(AttackObjective::value), 1},
       {"PGD, cross-entropy", gradient(AttackObjective::cross_entropy), 1},
       {"MinBest", gradient(AttackObjective::min_best), 1},
+      {"director, untaught", director(Director::Play::sampled), 1},
+      {"director, untaught and greedy", director(Director::Play::greedy), 1},
       {"best response, everywhere", std::make_shared<BestResponseAttack>(judge, ball, BestResponseOptions{3, 0}), 1},
       {"best response", std::make_shared<BestResponseAttack>(judge, ball, BestResponseOptions{}), 1}};
 }

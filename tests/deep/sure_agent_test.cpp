@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include <maximin/deep/attacks/adaptive_director.hpp>
 #include <maximin/deep/attacks/best_response_attack.hpp>
 #include <maximin/deep/attacks/gradient_attack.hpp>
 #include <maximin/deep/attacks/offset_attack.hpp>
+#include <maximin/deep/attacks/pa_ad_attack.hpp>
 #include <maximin/deep/attacks/simple_attacks.hpp>
 #include <maximin/deep/runtime.hpp>
 #include <maximin/theory/rollout_in_step.hpp>
@@ -54,6 +56,8 @@ std::vector<std::shared_ptr<GridAttack>> attacks(const ObservationBall& ball) {
           std::make_shared<ConstantOffsetAttack>(ball),
           std::make_shared<GradientAttack>(network, ball, GradientAttackOptions{}),
           std::make_shared<BestResponseAttack>(network, ball, BestResponseOptions{}),
+          std::make_shared<AdaptiveDirector>(network, ball),
+          std::make_shared<PaAdAttack>(network, ball),
           std::make_shared<LeastSureAttack>(ball)};
 }
 
