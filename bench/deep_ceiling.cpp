@@ -32,7 +32,9 @@
 ///     belief=, aggregator=   in the place of the agents' own: observed, ball or exact; min, mean, soft-min:B, cvar:A
 ///     positions=2000000      of (truth, belief), before the exact worst case of an agent with memory is given up
 ///     rounds=4               episodes from every start for attacks that draw
-///     attacks=yes            the deep layer's attacks too
+///     attacks=yes            the deep layer's attacks too, but for those that ask the agent for more than its answers
+///     learned=no             or quick, or full: learned attacks too, taught in the continuous world, for seconds or
+///                            minutes
 ///
 /// An agent whose belief is a particle filter is taken with the exact belief of the lattice. Agents were trained in the
 /// continuous world; on a coarse lattice diagonal moves end elsewhere (bench/gridworld_discretisation), so look at "no
@@ -45,6 +47,7 @@ struct Settings {
   std::string belief, aggregator;
   long positions = 2'000'000, rounds = 4;
   bool attacks = true;
+  std::string learned = "no";
   std::vector<std::filesystem::path> files;
 };
 
@@ -73,9 +76,11 @@ Settings parse(int argc, char** argv) {
       s.rounds = std::atol(value.c_str());
     } else if (name == "attacks") {
       s.attacks = value == "yes";
+    } else if (name == "learned") {
+      s.learned = value;
     } else {
-      throw InputError(
-          fmt::format("{}: expected steps, eps, diagonal, belief, aggregator, positions, rounds or attacks", text));
+      throw InputError(fmt::format(
+          "{}: expected steps, eps, diagonal, belief, aggregator, positions, rounds, attacks or learned", text));
     }
   }
   return s;
@@ -176,10 +181,12 @@ void report_agent(const LatticeWorld& world, const std::filesystem::path& file, 
              acting.random_actions > 0 ? ", its random actions left out" : "");
   const AttackTarget target{&trained, acting, values};
   for (const NamedAttack& named : named_attacks()) {
-    if (named.learned || (!settings.attacks && named.name != "none")) continue;
+    if (named.learned ? settings.learned == "no" : !settings.attacks && named.name != "none") continue;
+    if (named.name == "through-defence") continue;  // differentiates what the agent goes by, off the lattice
     AttackSetting setting;
     setting.name = named.name;
     setting.eps = world.options().eps;
+    setting.quick = settings.learned == "quick";
     const auto attack = make_attack(setting, target);
     report_attack(world, mind, *attack, named.title, named.name == "none" ? 1 : settings.rounds);
   }

@@ -59,6 +59,21 @@ Belief LatticeAgent::would_believe(Lane lane, State shown) const {
   return met;
 }
 
+Mind LatticeAgent::mind(Lane lane) const {
+  const Memory& memory = lanes_[static_cast<std::size_t>(lane)];
+  if (memory.belief.empty()) return {};
+  const Point first = world_->place(memory.belief.front());
+  Mind mind{true, memory.last, {}, {first.x, first.x, first.y, first.y}};
+  for (const State s : memory.belief) {
+    const Point p = world_->place(s);
+    const auto share = 1 / static_cast<double>(memory.belief.size());
+    mind.mean = {mind.mean.x + share * p.x, mind.mean.y + share * p.y};
+    mind.hull = {std::min(mind.hull.x_low, p.x), std::max(mind.hull.x_high, p.x), std::min(mind.hull.y_low, p.y),
+                 std::max(mind.hull.y_high, p.y)};
+  }
+  return mind;
+}
+
 void LatticeAgent::act(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Stream>,
                        std::span<Action> actions) {
   for (std::size_t k = 0; k < lanes.size(); ++k) {

@@ -48,6 +48,7 @@ class LatticeAgent final : public GridAgent {
   void act(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Stream> streams,
            std::span<Action> actions) override;
   void would_do(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Action> actions) const override;
+  Mind mind(Lane lane) const override;
 
   /// The belief that the observation would lead to in the lane now.
   Belief would_believe(Lane lane, State shown) const;

@@ -38,6 +38,7 @@ class Rounding final : public GridAgent {
     }
     agent_->would_do(lanes, rounded, actions);
   }
+  Mind mind(Lane lane) const override { return agent_->mind(lane); }
 
  private:
   [[noreturn]] static void only_asked() { throw std::logic_error("attack: acts in the agent's place"); }

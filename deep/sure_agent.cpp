@@ -18,7 +18,21 @@ void SureAgent::act(std::span<const Lane> lanes, std::span<const Point> shown, s
     InLane& in = lanes_[l];
     actions[k] = in.started ? in.agent.act(shown[k], streams[l]) : in.agent.begin(shown[k], streams[l]);
     in.started = true;
+    in.last = actions[k];
   }
+}
+
+Mind SureAgent::mind(Lane lane) const {
+  const InLane& in = lanes_[static_cast<std::size_t>(lane)];
+  if (!in.started) return {};
+  Mind mind{true, in.last, {}, belief(lane).hull()};
+  const double area = belief(lane).area();
+  for (const Box& box : belief(lane).boxes()) {
+    const double share = box.area() / area;
+    mind.mean.x += share * (box.x_low + box.x_high) / 2;
+    mind.mean.y += share * (box.y_low + box.y_high) / 2;
+  }
+  return mind;
 }
 
 void SureAgent::would_do(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Action> actions) const {

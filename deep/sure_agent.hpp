@@ -17,13 +17,15 @@ class SureAgent final : public GridAgent {
  public:
   explicit SureAgent(const HullControl& control) : control_(&control) {}
 
-  void resize(Lane lanes) override { lanes_.assign(static_cast<std::size_t>(lanes), {HullAgent(*control_), false}); }
+  void resize(Lane lanes) override { lanes_.assign(static_cast<std::size_t>(lanes), {HullAgent(*control_), false, 0}); }
   void forget(Lane lane) override;
   /// Takes no random numbers as long as observations keep to the ball.
   void act(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Stream> streams,
            std::span<Action> actions) override;
   /// Action 0 where no observation of the kind may be shown.
   void would_do(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Action> actions) const override;
+
+  Mind mind(Lane lane) const override;
 
   /// What the agent would be sure of from here on if it were shown this now; minus infinity where that may not be
   /// shown.
@@ -38,6 +40,7 @@ class SureAgent final : public GridAgent {
   struct InLane {
     HullAgent agent;
     bool started;
+    Action last = 0;
   };
 
   const HullControl* control_;
