@@ -36,7 +36,7 @@ struct TableCommand {
   int seeds = 3;
   std::optional<std::uint64_t> first_seed;  ///< unless given: 1 for the table, 101 for the choice of an aggregator
   long episodes = 100;
-  std::vector<std::string> only;
+  std::vector<std::string> only, attacks;  ///< what is left in; empty: all
   int jobs = 1;
   bool quick = false;
   long frames = 0;  ///< of each training; 0: what the recipes say
@@ -242,12 +242,13 @@ class TableMaker {
 
 int make_table(const TableCommand& command) {
   std::vector<PlannedCell> plan = command.kind == "aggregators" ? aggregators_plan() : gridworld_plan();
-  if (!command.only.empty()) {
-    std::erase_if(plan, [&](const PlannedCell& c) {
-      return std::find(command.only.begin(), command.only.end(), c.kind) == command.only.end();
-    });
-  }
-  if (plan.empty()) throw InputError("--only: names no agent of the table, expected e.g. dqn");
+  const auto left_out = [](const std::vector<std::string>& left_in, const std::string& name) {
+    return !left_in.empty() && std::find(left_in.begin(), left_in.end(), name) == left_in.end();
+  };
+  std::erase_if(plan, [&](const PlannedCell& c) {
+    return left_out(command.only, c.kind) || left_out(command.attacks, c.attack);
+  });
+  if (plan.empty()) throw InputError("--only, --attacks: no such cell in the table, expected e.g. --only bp-dqn");
   if (command.quick) note("--quick: everything in small, to see that it works; the numbers mean nothing");
   make_folder(command.folder);
   make_folder(command.output);
@@ -273,6 +274,9 @@ void add_table(CLI::App& app, Task& task) {
       ->check(whole_number(2, 1'000'000))
       ->capture_default_str();
   sub->add_option("--only", command->only, "Agents to leave in, e.g. dqn bp-dqn")->check(one_of(deep::agent_kinds()));
+  std::vector<std::string> attacks;
+  for (const auto& attack : deep::named_attacks()) attacks.push_back(attack.name);
+  sub->add_option("--attacks", command->attacks, "Attacks to leave in, e.g. none pgd")->check(one_of(attacks));
   sub->add_option("--jobs", command->jobs, "Trainings and evaluations side by side")
       ->check(whole_number(1, 256))
       ->capture_default_str();

@@ -44,7 +44,7 @@ REFUSALS = [
     refused(["watch", "none.agent"], "none.agent: cannot be read"),
     refused(["table", "atari"], "atari"),
     refused(["table", "gridworld", "--only", "dqm"], "dqm"),
-    refused(["table", "aggregators", "--only", "dqn"], "--only: names no agent of the table"),
+    refused(["table", "aggregators", "--only", "dqn"], "--only, --attacks: no such cell"),
     refused(["table", "gridworld", "--output", "c.json", "--folder", "."], "c.json", c_json="{}"),
 ]
 
@@ -172,8 +172,8 @@ def check_agents(program):
         # Two that begin with the same vanilla agent, side by side.
         with open(os.path.join(folder, "c.json"), "w") as f:
             f.write('{"network": {"hidden": [8]}, "random_actions": 0.3}')
-        trained = here("train", "bp-dqn", "wocar-dqn", "--frames", "600", "--jobs", "2", "--eps", "0.3", "--folder", ".", "--config",
-                       "c.json")
+        trained = here("train", "bp-dqn", "wocar-dqn", "--frames", "600", "--jobs", "2", "--eps", "0.3", "--folder", ".",
+                       "--config", "c.json")
         expected = ["bp-dqn-eps0.3-seed1.agent", "dqn-seed1.agent", "wocar-dqn-eps0.3-seed1.agent"]
         if trained.returncode != 0 or sorted(f for f in os.listdir(folder) if f.endswith(".agent")) != expected:
             return ["training: exit code %d, %r, %s" % (trained.returncode, trained.stderr, os.listdir(folder))]
@@ -231,8 +231,9 @@ def check_killed_table(program):
     problems = []
     with tempfile.TemporaryDirectory() as folder:
         def command(name):
-            return [program, "table", "gridworld", "--only", "dqn", "--frames", "600", "--seeds", "1", "--episodes", "2", "--folder",
-                    os.path.join(folder, name), "--output", os.path.join(folder, name)]
+            where = os.path.join(folder, name)
+            return [program, "table", "gridworld", "--only", "dqn", "--attacks", "none", "random", "pgd", "--frames", "600",
+                    "--seeds", "1", "--episodes", "2", "--folder", where, "--output", where]
 
         def table(name):
             with open(os.path.join(folder, name, "gridworld.json")) as f:

@@ -168,7 +168,7 @@ TEST_F(TrainAgent, StoppedAndResumedLeavesTheSameFiles) {
     const fs::path whole = folder_ / "whole", cut = folder_ / "cut";
     const AgentSpec spec = small(kind);
     EXPECT_EQ(train(spec, whole, 1 << 30), 0);
-    EXPECT_GT(train(spec, cut, 3), 3);
+    EXPECT_GE(train(spec, cut, 2), 3);
     for (const std::string& name : {spec.name(), std::string("dqn-seed1")}) {
       for (const char* ending : {".agent", ".csv"}) {
         EXPECT_EQ(bytes_of(whole / (name + ending)), bytes_of(cut / (name + ending))) << name << ending;
