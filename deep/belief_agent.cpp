@@ -37,7 +37,7 @@ torch::Tensor BeliefAgent::values(const BeliefStates& belief) const {
   const torch::Device device = q_->parameters().front().device();
   const torch::Tensor states = belief.states.to(device);
   const torch::Tensor q = q_->forward(states.flatten(0, 1)).view({states.size(0), states.size(1), -1});
-  return aggregate(aggregator_, q, belief.weights.to(device));
+  return aggregate(aggregator_, q, belief.weights.to(device, q.scalar_type()));
 }
 
 std::vector<Action> BeliefAgent::last_of(std::span<const Lane> lanes) const {

@@ -45,7 +45,7 @@ class LaneBelief {
 
   /// Whether the lane's belief holds the state possible.
   virtual bool holds(Lane lane, Point truth) const = 0;
-  /// The area of the lane's belief.
+  /// The area of the lane's belief; the number of its states where a world has finitely many.
   virtual double size(Lane lane) const = 0;
   /// How often since `resize` prediction and observation did not meet.
   virtual long empty_intersections() const { return 0; }

@@ -86,7 +86,7 @@ double Trainer::exploration() const {
 }
 
 void Trainer::begin_episode(std::size_t lane) {
-  truths_[lane] = parts_.world.reset(streams_[lane]);
+  truths_[lane] = parts_.world->reset(streams_[lane]);
   agent_->forget(static_cast<Lane>(lane));
   parts_.attack->forget(static_cast<Lane>(lane));
   episodes_[lane] = {};
@@ -166,7 +166,7 @@ void Trainer::settle(std::span<const Lane> lanes) {
 /// Every lane takes its action.
 void Trainer::move(CurvePoint& point) {
   for (std::size_t l = 0; l < all_lanes_.size(); ++l) {
-    const Outcome<Point> outcome = parts_.world.step(truths_[l], actions_[l]);
+    const Outcome<Point> outcome = parts_.world->step(truths_[l], actions_[l], streams_[l]);
     Episode& episode = episodes_[l];
     episode.total_reward += outcome.reward;
     ++episode.steps;

@@ -7,6 +7,7 @@
 
 #include <maximin/deep/belief_agent.hpp>
 #include <maximin/deep/loss.hpp>
+#include <maximin/deep/plane_world.hpp>
 #include <maximin/deep/replay.hpp>
 #include <maximin/deep/tensor_file.hpp>
 #include <maximin/gridworld/gridworld.hpp>
@@ -55,7 +56,7 @@ struct TrainingParts {
   AnyAggregator aggregator = MinAggregator{};
   std::shared_ptr<GridAttack> attack;
   std::shared_ptr<Loss> loss;
-  ContinuousGridworld world;
+  std::shared_ptr<const PlaneWorld> world = std::make_shared<GridworldPlane>();
   torch::Device device = torch::kCPU;
 };
 
@@ -68,7 +69,7 @@ struct CurvePoint {
   double loss = 0;         ///< mean over the stretch's updates; NaN before the first
   double exploration = 0;  ///< share of random actions at its end
   double believed = 0;     ///< share of steps in which the belief held the truth
-  double belief_size = 0;  ///< mean area of a belief
+  double belief_size = 0;  ///< mean size of a belief, see LaneBelief::size
 };
 
 /// Trains one network. Work goes in stretches: every stretch begins with new episodes and random streams that depend on
