@@ -154,6 +154,9 @@ TEST_F(TensorFiles, HostileHeadingsWithAGoodChecksumAreRefused) {
   setrlimit(RLIMIT_AS, &before);
   EXPECT_TRUE(is_refusal(reading(sized("[0]", "float16"))));
   EXPECT_EQ(reading(sized("[0,5]")), "[nothing thrown]");
+  for (const char* sizes : {"[]", "[1]", "[2,3]"}) {
+    EXPECT_NE(reading(sized(sizes)).find("cut off"), std::string::npos) << sizes;
+  }
   for (const std::string& tensors :
        {"[" + one + "," + one + "]", std::string("null"), std::string("7"), std::string("[7]"), std::string("[{}]"),
         std::string(R"([{"name":7,"type":"uint8","sizes":[1]}])"),

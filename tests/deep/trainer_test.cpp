@@ -136,13 +136,13 @@ TEST(Trainer, ContinuesBitForBit) {
   for (const AgentSpec& spec : specs) {
     const Outcomes whole = uninterrupted(spec);
     EXPECT_EQ(whole.curve.size(), 5U);
-    for (const int cut : {1, 3}) EXPECT_EQ(difference(whole, resumed(spec, cut)), "") << to_json(spec) << cut;
+    EXPECT_EQ(difference(whole, resumed(spec, 3)), "") << to_json(spec);
   }
 
   // Whatever is not carried over makes a difference.
   const AgentSpec& spec = specs[0];
   const Outcomes whole = uninterrupted(spec);
-  EXPECT_EQ(difference(whole, resumed(spec, 0)), "");  // before the first frame
+  for (const int cut : {0, 1, 4}) EXPECT_EQ(difference(whole, resumed(spec, cut)), "") << cut;
   const auto flawed = [&](const std::function<void(TensorFile&)>& tamper) {
     return difference(whole, resumed(spec, 3, tamper));
   };
@@ -337,7 +337,9 @@ TEST(Trainer, LearnsTheGridworld) {
   o.target_every = 300;
   o.frames_per_update = 8;
   EXPECT_GT(clean_return(spec), 0);  // about 100; random: -76, wandering: -100, the best: 188
+  // Where nothing is learned, however long is long enough.
   o.learning_rate = o.final_learning_rate = 1e-12;
+  o.frames = 4000;
   EXPECT_LT(clean_return(spec), -40);
 }
 
