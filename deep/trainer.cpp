@@ -118,6 +118,21 @@ void Trainer::look(std::span<const Lane> lanes) {
   }
 }
 
+/// Keeps the belief just acted on, row `row`, for the transition that begins in the lane.
+void Trainer::keep_belief(long row, std::size_t lane) {
+  if (options_.bootstrap == BootstrapBelief::next) return;
+  const BeliefStates& belief = agent_->acted_on();
+  if (!held_.states.defined()) {
+    const auto many = [&](const torch::Tensor& one) {
+      return one[0].unsqueeze(0).repeat_interleave(options_.lanes, 0);
+    };
+    held_ = {many(belief.states), many(belief.weights)};
+  }
+  const auto l = static_cast<long>(lane);
+  held_.states[l].copy_(belief.states[row]);
+  held_.weights[l].copy_(belief.weights[row]);
+}
+
 /// Stores the transitions that waited for the belief now held, and begins episodes anew where one was cut.
 void Trainer::settle(std::span<const Lane> lanes) {
   std::vector<Lane> anew;
@@ -127,12 +142,18 @@ void Trainer::settle(std::span<const Lane> lanes) {
     learner_states_[l] = learner_state(static_cast<long>(k), truths_[l]);
     if (waiting.waiting) {
       waiting.transition.next = learner_states_[l];
-      replay_.add(waiting.transition, agent_->acted_on(), static_cast<long>(k));
+      if (options_.bootstrap == BootstrapBelief::next) {
+        replay_.add(waiting.transition, agent_->acted_on(), static_cast<long>(k));
+      } else {
+        replay_.add(waiting.transition, held_, lanes[k]);
+      }
       waiting.waiting = false;
     }
     if (waiting.truncated) {
       begin_episode(l);
       anew.push_back(lanes[k]);
+    } else {
+      keep_belief(static_cast<long>(k), l);
     }
   }
   if (anew.empty()) return;
@@ -140,6 +161,7 @@ void Trainer::settle(std::span<const Lane> lanes) {
   for (std::size_t k = 0; k < anew.size(); ++k) {
     const auto l = static_cast<std::size_t>(anew[k]);
     learner_states_[l] = learner_state(static_cast<long>(k), truths_[l]);
+    keep_belief(static_cast<long>(k), l);
   }
 }
 

@@ -104,6 +104,7 @@ class Trainer {
   void begin_episode(std::size_t lane);
   void look(std::span<const Lane> lanes);
   void settle(std::span<const Lane> lanes);
+  void keep_belief(long row, std::size_t lane);
   void move(CurvePoint& point);
   void learn(CurvePoint& point, long& updates);
   Point learner_state(long row, Point truth) const;
@@ -125,6 +126,7 @@ class Trainer {
   std::vector<Point> truths_, shown_, learner_states_;
   std::vector<Action> actions_;
   std::vector<Pending> pending_;
+  BeliefStates held_;  // M_t of each lane, where the target wants it instead of M_{t+1}
   std::vector<Episode> episodes_;
 };
 
