@@ -102,7 +102,14 @@ const char* kind_of() {
   if constexpr (std::is_integral_v<T>) return "a whole number";
   if constexpr (std::is_floating_point_v<T>) return "a number";
   if constexpr (std::is_same_v<T, std::string>) return "a text";
-  return "a list of whole numbers";
+  return "a list of whole numbers from 1 to 65536";
+}
+
+/// The value as it stands there, short enough for a line.
+std::string excerpt_of(const nlohmann::ordered_json& value) {
+  using Json = nlohmann::ordered_json;
+  const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  return text.size() <= 40 ? text : text.substr(0, 37) + "...";
 }
 
 class Reader {
@@ -123,7 +130,7 @@ class Reader {
       inner.refuse_unknown();
     } else {
       if (!fits<T>(*found)) {
-        throw InputError(fmt::format("{}: {}, expected {}", here, found->dump().substr(0, 40), kind_of<T>()));
+        throw InputError(fmt::format("{}: {}, expected {}", here, excerpt_of(*found), kind_of<T>()));
       }
       field = found->template get<T>();
     }
@@ -133,7 +140,7 @@ class Reader {
     for (const auto& item : json_.items()) {
       if (std::find(names_.begin(), names_.end(), item.key()) != names_.end()) continue;
       const std::string nearest = nearest_name(item.key(), names_);
-      throw InputError(fmt::format("{}: {}: no such field, expected {}", where_, item.key(),
+      throw InputError(fmt::format("{}: {}: no such field, expected {}", where_, excerpt_of(item.key()),
                                    nearest.empty() ? fmt::format("{}", fmt::join(names_, ", ")) : nearest));
     }
   }
@@ -160,10 +167,33 @@ class Reader {
 
 void require_word(const std::string& word, const std::vector<std::string>& words, const std::string& where) {
   if (std::find(words.begin(), words.end(), word) != words.end()) return;
-  throw InputError(fmt::format("{}: {}, expected {}", where, word, fmt::join(words, ", ")));
+  throw InputError(fmt::format("{}: {}, expected {}", where, excerpt_of(word), fmt::join(words, ", ")));
+}
+
+/// The name becomes the name of a file.
+void require_file_name(const std::string& name, const std::string& where) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("-_.:+").find(c) != std::string_view::npos;
+  };
+  if (!name.empty() && name.size() <= 64 && name[0] != '.' && std::all_of(name.begin(), name.end(), allowed)) return;
+  throw InputError(fmt::format("{}: {}, expected at most 64 letters, digits and -_.:+", where, excerpt_of(name)));
+}
+
+double weights_of(const QNetworkShape& shape) {
+  double sum = 0, width = static_cast<double>(shape.inputs * (1 + 2 * shape.waves));
+  const auto add = [&](long outputs) {
+    sum += (width + 1) * static_cast<double>(outputs);
+    width = static_cast<double>(outputs);
+  };
+  for (const long h : shape.hidden) add(h);
+  add(shape.actions);
+  return sum;
 }
 
 void check(const AgentSpec& s, const std::string& where) {
+  require_file_name(s.kind, where + ": kind");
+  if (!s.start_from.empty()) require_word(s.start_from, agent_kinds(), where + ": start_from");
   require_word(s.loss, {"td", "sa", "wocar", "radial", "car"}, where + ": loss");
   require_word(s.belief, {"observed", "ball", "exact", "pf-lstm", "pf-gru"}, where + ": belief");
   require_word(s.target_order, {"max-of-aggregate", "aggregate-of-max"}, where + ": target_order");
@@ -180,9 +210,16 @@ void check(const AgentSpec& s, const std::string& where) {
   within("inputs", static_cast<double>(s.network.inputs), 2, 2);
   within("actions", static_cast<double>(s.network.actions), 8, 8);
   within("waves", static_cast<double>(s.network.waves), 0, 16);
-  within("capacity", static_cast<double>(s.training.replay.capacity), 1, 1e7);
-  aggregator_named(s.aggregator);
-  s.training.check();
+  within("input_centre", s.network.input_centre, -1e6, 1e6);
+  within("input_scale", s.network.input_scale, -1e6, 1e6);
+  within("layers", static_cast<double>(s.network.hidden.size()), 0, 16);
+  within("weights", weights_of(s.network), 1, 1e7);
+  try {
+    aggregator_named(s.aggregator);
+    s.training.check();
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}", where, e.what()));
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,9 +41,25 @@ struct AgentSpec {
 /// Kinds that `recipe` knows.
 const std::vector<std::string>& agent_kinds();
 
-/// How the project trains an agent of this kind, eps and training seed. `quick`: a training of seconds, that shows that
-/// everything works and no more. Throws InputError on a kind that it does not know, naming the nearest.
-AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, bool quick = false);
+/// How much of a recipe's training to do. Where a flag is enough, `true` is the quick one.
+struct Effort {
+  bool quick = false;  ///< a training of seconds, that shows that everything works and no more
+  long frames = 0;     ///< so many frames of each training, and exploration in proportion; 0: what the recipe says
+
+  Effort(bool in_small = false, long so_many_frames = 0) : quick(in_small), frames(so_many_frames) {}
+};
+
+/// How the project trains an agent of this kind, eps and training seed. Throws InputError on a kind that it does not
+/// know, naming the nearest.
+AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, const Effort& effort = {});
+
+/// What the agent's training begins with and what is trained before it: the recipe of `start_from`, with the agent's
+/// own network and scale of rewards. Empty where it begins with nothing. Throws InputError where that would be called
+/// as the agent itself.
+std::optional<AgentSpec> beginning_of(const AgentSpec& spec, const Effort& effort = {});
+
+/// Whether the two are trained in the same way: all is the same but perhaps a radius that has no part in it.
+bool same_training(const AgentSpec& a, const AgentSpec& b);
 
 /// Every field, in order.
 nlohmann::ordered_json to_json(const AgentSpec& spec);

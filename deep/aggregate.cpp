@@ -1,5 +1,6 @@
 #include <maximin/deep/aggregate.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 
@@ -28,8 +29,14 @@ torch::Tensor of(const MeanAggregator&, const torch::Tensor& q, const torch::Ten
   return torch::bmm(weights.unsqueeze(1), q).squeeze(1);
 }
 
+// In double: for a small beta the logarithm is of a number near 1, for a large one the exponents leave the floats.
 torch::Tensor of(const SoftMinAggregator& soft, const torch::Tensor& q, const torch::Tensor& weights) {
-  return torch::logsumexp(weights.log().unsqueeze(-1) - soft.beta() * q, 1) / -soft.beta();
+  const torch::Tensor w = weights.unsqueeze(-1).to(torch::kDouble);
+  const torch::Tensor values = q.to(torch::kDouble).masked_fill(w <= 0, std::numeric_limits<double>::infinity());
+  const torch::Tensor least = values.amin(1, true);
+  // Weights that are floats sum to 1 but nearly, and a small beta would make much of that.
+  const torch::Tensor mean = (w * torch::exp((values - least) * -soft.beta())).sum(1) / w.sum(1);
+  return (least.squeeze(1) - mean.log() / soft.beta()).to(q.scalar_type());
 }
 
 // The worst values first, each with the part of its weight that still fits into alpha.
@@ -37,7 +44,9 @@ torch::Tensor of(const CvarAggregator& cvar, const torch::Tensor& q, const torch
   const auto [sorted, order] = q.sort(1);
   const torch::Tensor w = weights.unsqueeze(-1).expand_as(q).gather(1, order);
   const torch::Tensor before = w.cumsum(1) - w;
-  const torch::Tensor taken = torch::minimum(w, (cvar.alpha() - before).clamp_min(0));
+  // A share that is no number above 0 among floats would take nothing at all.
+  const double alpha = std::max(cvar.alpha(), 1e-30);
+  const torch::Tensor taken = torch::minimum(w, (alpha - before).clamp_min(0));
   return (taken * sorted).sum(1) / taken.sum(1);
 }
 

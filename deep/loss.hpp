@@ -17,7 +17,8 @@ struct Batch {
   torch::Tensor rewards;      ///< R_t, [b]
   torch::Tensor terminal;     ///< 1 where the episode is over, else 0, [b]
   torch::Tensor next_states;  ///< s_{t+1}, [b, state...]
-  BeliefStates next_belief;   ///< M_{t+1}, [b, K, state...]; anything where the episode is over
+  /// M_{t+1} (M_t where the options of the training say so), [b, K, state...]; anything where the episode is over.
+  BeliefStates next_belief;
 };
 
 /// Where the training stands: schedules depend on it.

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -46,9 +48,12 @@ AgentSpec belief_pessimistic(std::uint64_t seed, const char* belief) {
   return s;
 }
 
+/// CROWN's bounds take ten times as long as the temporal difference alone: fewer updates.
 AgentSpec robust_baseline(std::uint64_t seed, const char* loss) {
   AgentSpec s = vanilla(seed);
   continue_from_vanilla(s);
+  s.training.frames = 200'000;
+  s.training.frames_per_update = 8;
   s.loss = loss;
   return s;
 }
@@ -70,6 +75,17 @@ AgentSpec full_recipe(std::string_view kind, std::uint64_t seed) {
   return noisy;
 }
 
+constexpr double quick_share = 0.06;
+
+/// A training of so many frames in all, in stretches that are short in comparison.
+void shorten(TrainOptions& o, long frames) {
+  const double share = static_cast<double>(frames) / static_cast<double>(o.frames);
+  o.frames = frames;
+  o.explore_frames = std::lround(static_cast<double>(o.explore_frames) * share);
+  o.stretch_frames = std::clamp<long>(frames / 12, o.lanes, o.stretch_frames);
+  o.warm_up = std::min(o.warm_up, frames / 60);
+}
+
 }  // namespace
 
 const std::vector<std::string>& agent_kinds() {
@@ -78,7 +94,7 @@ const std::vector<std::string>& agent_kinds() {
   return kinds;
 }
 
-AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, bool quick) {
+AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, const Effort& effort) {
   if (std::find(agent_kinds().begin(), agent_kinds().end(), kind) == agent_kinds().end()) {
     const std::string nearest = nearest_name(kind, agent_kinds());
     throw InputError(fmt::format("agent: {}, expected {}", kind,
@@ -88,14 +104,25 @@ AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, bool qui
   s.kind = kind;
   // The same vanilla agent, whatever it will be attacked with.
   if (s.knows_eps()) s.eps = eps;
-  if (quick) {
-    const double share = 0.06;
-    s.training.frames = static_cast<long>(static_cast<double>(s.training.frames) * share);
-    s.training.explore_frames = static_cast<long>(static_cast<double>(s.training.explore_frames) * share);
-    s.training.stretch_frames = 5000;
-    s.training.warm_up = 1000;
-  }
+  if (effort.quick) shorten(s.training, static_cast<long>(static_cast<double>(s.training.frames) * quick_share));
+  if (effort.frames > 0) shorten(s.training, effort.frames);
   return s;
+}
+
+std::optional<AgentSpec> beginning_of(const AgentSpec& spec, const Effort& effort) {
+  if (spec.start_from.empty()) return std::nullopt;
+  AgentSpec first = recipe(spec.start_from, spec.eps, spec.training.seed, effort);
+  first.network = spec.network;
+  first.training.reward_scale = spec.training.reward_scale;
+  if (first.name() != spec.name()) return first;
+  throw InputError(fmt::format("start_from: {}, expected an agent that is not called {} too, or another kind",
+                               spec.start_from, spec.name()));
+}
+
+bool same_training(const AgentSpec& a, const AgentSpec& b) {
+  AgentSpec other = b;
+  if (!a.knows_eps() && !b.knows_eps()) other.eps = a.eps;
+  return to_json(a) == to_json(other);
 }
 
 }  // namespace maximin::deep

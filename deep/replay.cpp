@@ -11,10 +11,30 @@
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
+namespace {
+
+// 8 GiB of places in beliefs.
+constexpr long most_states = 1L << 30U;
+
+void require(bool holds, const char* field, double value, const char* expected) {
+  if (!holds) throw InputError(fmt::format("replay: {} is {}, expected {}", field, value, expected));
+}
+
+}  // namespace
+
+void ReplayOptions::check() const {
+  require(capacity >= 1 && capacity <= 10'000'000, "capacity", static_cast<double>(capacity), "1 to 10 million");
+  require(alpha >= 0 && alpha <= 4, "alpha", alpha, "0 to 4");
+  require(beta_start >= 0 && beta_start <= 1, "beta_start", beta_start, "0 to 1");
+}
 
 Replay::Replay(const ReplayOptions& options, long belief_states) : options_(options) {
-  if (options.capacity < 1) throw InputError(fmt::format("replay: capacity {}, expected at least 1", options.capacity));
+  options.check();
   const long n = options.capacity;
+  if (n > most_states / belief_states) {
+    throw InputError(fmt::format("replay: capacity {} with {} states to a belief, expected at most {} states in all", n,
+                                 belief_states, most_states));
+  }
   states_ = torch::zeros({n, 2});
   next_states_ = torch::zeros({n, 2});
   actions_ = torch::zeros({n}, torch::kInt64);
@@ -134,12 +154,20 @@ void Replay::load(const TensorFile& file) {
   file.copy_to("replay.counters", counters);
   file.copy_to("replay.largest", largest);
   const long size = counters[0].item<long>(), next = counters[1].item<long>();
-  if (size < 0 || size > options_.capacity || next < 0 || next >= options_.capacity) {
-    throw InputError(fmt::format("replay memory of {} transitions, expected at most {}", size, options_.capacity));
+  if (size < 0 || size > options_.capacity || next < 0 || next >= options_.capacity ||
+      (size < options_.capacity && next != size)) {
+    throw InputError(
+        fmt::format("replay memory of {} transitions, the next at {}, expected at most {} and the next "
+                    "behind the last",
+                    size, next, options_.capacity));
   }
   const auto all = rows();
   for (std::size_t i = 0; i < all.size(); ++i) {
     file.copy_to(std::string("replay.") + row_names[i], all[i].slice(0, 0, size));
+  }
+  const torch::Tensor taken = actions_.slice(0, 0, size);
+  if (taken.lt(0).any().item<bool>() || taken.ge(ContinuousGridworld::actions).any().item<bool>()) {
+    throw InputError("replay memory with an action that there is none of, expected 0 to 7");
   }
   size_ = size;
   next_ = next;
@@ -147,6 +175,9 @@ void Replay::load(const TensorFile& file) {
   if (!options_.prioritised) return;
   torch::Tensor leaves = torch::zeros({size_}, torch::kDouble);
   file.copy_to("replay.priorities", leaves);
+  if (!(largest_ > 0 && std::isfinite(largest_)) || !(leaves.gt(0) & leaves.isfinite()).all().item<bool>()) {
+    throw InputError("replay memory with a priority that is none, expected positive numbers");
+  }
   std::fill(tree_.begin(), tree_.end(), 0.0);
   std::copy_n(leaves.data_ptr<double>(), size_, tree_.begin() + leaves_);
   for (std::size_t node = static_cast<std::size_t>(leaves_) - 1; node >= 1; --node) {

@@ -17,6 +17,9 @@ struct ReplayOptions {
   bool prioritised = false;  ///< proportional to |TD error|^alpha (Schaul et al. 2016), else uniform
   double alpha = 0.5;
   double beta_start = 0.4;  ///< importance correction, rising to 1 at the end of the training
+
+  /// Throws InputError, naming the field, when one is out of range.
+  void check() const;
 };
 
 /// A transition as it is stored.
@@ -31,12 +34,13 @@ struct Transition {
 /// The last `capacity` transitions (s_t, a_t, R_t, s_{t+1}, M_{t+1}) of the Gridworld.
 class Replay {
  public:
-  /// Beliefs of `belief_states` states each.
+  /// Beliefs of `belief_states` states each. Throws InputError when an option is out of range or they do not fit.
   Replay(const ReplayOptions& options, long belief_states);
 
   long size() const { return size_; }
 
-  /// Stores a transition with the belief of row `row`; the belief is not looked at where the episode is over.
+  /// Stores a transition with the belief of row `row`, whose tensors are contiguous floats on the CPU; the belief is
+  /// not looked at where the episode is over.
   void add(const Transition& transition, const BeliefStates& next_belief, long row);
 
   /// What a draw came to: where the transitions stand, for `reprioritise`, and their importance weights, at most 1.
@@ -51,8 +55,8 @@ class Replay {
   /// Takes over |TD error| of drawn transitions as their priority. Does nothing when draws are uniform.
   void reprioritise(const std::vector<long>& indices, const torch::Tensor& td_error);
 
-  /// Everything but the options, as tensors replay.NAME, for a checkpoint; and back. Throws InputError when it does not
-  /// fit.
+  /// Everything but the options, as tensors replay.NAME, for a checkpoint, which share their numbers with the memory;
+  /// and back. Throws InputError when it does not fit.
   void save(TensorFile& file) const;
   void load(const TensorFile& file);
 

@@ -1,5 +1,6 @@
 #include <maximin/deep/tensor_file.hpp>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -61,23 +62,47 @@ std::string whole(const std::filesystem::path& path) {
   return bytes;
 }
 
+/// The JSON of the heading. Deep nesting would overflow the stack of whoever copies or prints it.
+nlohmann::ordered_json parse_heading(std::string_view text) {
+  const auto not_too_deep = [](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
+    if (depth > 32) throw InputError("a heading nested deeper than 32 levels, expected kind, about and tensors");
+    return true;
+  };
+  return nlohmann::ordered_json::parse(text, not_too_deep);
+}
+
+/// At most 8 whole numbers whose product, zeros left out, is one that LibTorch can count with.
+std::vector<std::int64_t> read_sizes(const nlohmann::ordered_json& list) {
+  std::vector<std::int64_t> sizes;
+  std::int64_t room = std::int64_t{1} << 48U;
+  for (const auto& size : list) {
+    if (!size.is_number_unsigned() || sizes.size() == 8 ||
+        size.get<std::uint64_t>() > static_cast<std::uint64_t>(room)) {
+      throw InputError("a tensor of impossible sizes, expected at most 8 whole numbers");
+    }
+    sizes.push_back(size.get<std::int64_t>());
+    room /= std::max<std::int64_t>(sizes.back(), 1);
+  }
+  return sizes;
+}
+
 /// The tensors of the list in the heading, out of the bytes behind it.
 void read_tensors(const nlohmann::ordered_json& list, std::string_view bytes, TensorFile& file) {
+  if (!list.is_array()) throw InputError("a heading whose tensors are no list, expected one");
   for (const auto& entry : list) {
     const auto type = type_named(entry.at("type").get<std::string>());
     if (!type) throw InputError("a tensor of unknown type, expected float32, float64, int64 or uint8");
-    const auto sizes = entry.at("sizes").get<std::vector<std::int64_t>>();
+    const std::vector<std::int64_t> sizes = read_sizes(entry.at("sizes"));
     std::size_t length = torch::elementSize(*type);
-    for (const std::int64_t size : sizes) {
-      if (size < 0 || (size > 0 && length > bytes.size() / static_cast<std::size_t>(size))) {
-        throw InputError("tensors are cut off, expected all that its heading lists");
-      }
-      length *= static_cast<std::size_t>(size);
-    }
+    for (const std::int64_t size : sizes) length *= static_cast<std::size_t>(size);
+    if (length > bytes.size()) throw InputError("tensors are cut off, expected all that its heading lists");
     torch::Tensor tensor = torch::empty(sizes, *type);
     if (length > 0) std::memcpy(tensor.data_ptr(), bytes.data(), length);
     bytes.remove_prefix(length);
-    file.tensors[entry.at("name").get<std::string>()] = tensor;
+    const auto name = entry.at("name").get<std::string>();
+    if (!file.tensors.emplace(name, tensor).second) {
+      throw InputError(fmt::format("tensor {} twice, expected every name once", name));
+    }
   }
   if (!bytes.empty()) throw InputError("more than its heading lists, expected the end of the file");
 }
@@ -86,7 +111,8 @@ void read_tensors(const nlohmann::ordered_json& list, std::string_view bytes, Te
 
 const torch::Tensor& TensorFile::at(const std::string& name) const {
   const auto found = tensors.find(name);
-  if (found == tensors.end()) throw InputError(fmt::format("tensor {} is missing, expected it in a {}", name, kind));
+  if (found == tensors.end())
+    throw InputError(fmt::format("tensor {} is missing, expected it in a file of kind {}", name, kind));
   return found->second;
 }
 
@@ -117,7 +143,12 @@ void write_tensor_file(const std::filesystem::path& path, const TensorFile& cont
 }
 
 TensorFile read_tensor_file(const std::filesystem::path& path, const std::string& kind) {
-  const auto refuse = [&](const std::string& why) { return InputError(fmt::format("{}: {}", path.string(), why)); };
+  const auto refuse = [&](std::string why) {
+    // Names in the file may hold anything, line breaks too.
+    std::replace_if(
+        why.begin(), why.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+    return InputError(fmt::format("{}: {:.200}", path.string(), why));
+  };
   const std::string bytes = whole(path);
   if (!bytes.starts_with(any_version)) {
     throw refuse(fmt::format("no file of this program, expected one that begins with '{}'", any_version));
@@ -136,7 +167,7 @@ TensorFile read_tensor_file(const std::filesystem::path& path, const std::string
   if (line == std::string_view::npos) throw refuse("no heading, expected a line of JSON");
   TensorFile file;
   try {
-    const auto heading = nlohmann::ordered_json::parse(rest.substr(0, line));
+    const auto heading = parse_heading(rest.substr(0, line));
     file.kind = heading.at("kind").get<std::string>();
     if (file.kind != kind) {
       throw InputError(fmt::format("a file of kind '{}', expected '{}'", file.kind, kind));
@@ -157,8 +188,15 @@ void put_module(TensorFile& file, const std::string& prefix, const torch::nn::Mo
 }
 
 void get_module(const TensorFile& file, const std::string& prefix, torch::nn::Module& module) {
-  for (auto& item : module.named_parameters()) file.copy_to(prefix + '.' + item.key(), item.value());
-  for (auto& item : module.named_buffers()) file.copy_to(prefix + '.' + item.key(), item.value());
+  const auto take = [&](const std::string& key, const torch::Tensor& into) {
+    const std::string name = prefix + '.' + key;
+    file.copy_to(name, into);
+    if (into.is_floating_point() && !into.isfinite().all().item<bool>()) {
+      throw InputError(fmt::format("tensor {} holds what is no number, expected finite numbers", name));
+    }
+  };
+  for (const auto& item : module.named_parameters()) take(item.key(), item.value());
+  for (const auto& item : module.named_buffers()) take(item.key(), item.value());
 }
 
 }  // namespace maximin::deep

@@ -31,9 +31,9 @@ void write_tensor_file(const std::filesystem::path& path, const TensorFile& cont
 /// Reads a file of this kind. Throws InputError, "PATH: what is wrong, expected ...".
 TensorFile read_tensor_file(const std::filesystem::path& path, const std::string& kind);
 
-/// All parameters and buffers of a module, as PREFIX.NAME.
+/// All parameters and buffers of a module, as PREFIX.NAME; they share their numbers with the module.
 void put_module(TensorFile& file, const std::string& prefix, const torch::nn::Module& module);
-/// Takes them back. Throws InputError as TensorFile::copy_to.
+/// Takes them back. Throws InputError as TensorFile::copy_to, and where a number is not finite.
 void get_module(const TensorFile& file, const std::string& prefix, torch::nn::Module& module);
 
 }  // namespace maximin::deep

@@ -10,6 +10,7 @@
 #include <maximin/deep/pf_rnn_training.hpp>
 #include <maximin/deep/tensor_file.hpp>
 #include <maximin/deep/trained_agent.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -29,7 +30,7 @@ class Stopwatch {
 std::optional<TrainedAgent> finished(const AgentSpec& spec, const fs::path& path) {
   if (!fs::exists(path)) return std::nullopt;
   TrainedAgent agent = read_agent(path);
-  if (to_json(agent.spec) == to_json(spec)) return agent;
+  if (same_training(agent.spec, spec)) return agent;
   throw InputError(
       fmt::format("{}: an agent of another specification, expected to find it as it would be trained now; "
                   "remove it or train in another folder",
@@ -74,7 +75,9 @@ struct Files {
 double resume(const fs::path& path, const AgentSpec& spec, TrainedAgent& agent, Trainer& trainer) {
   const TensorFile file = read_tensor_file(path, "training");
   try {
-    if (file.about.at("specification") != to_json(spec)) {
+    AgentSpec written;
+    merge_json(written, file.about.at("specification"), "specification");
+    if (!same_training(written, spec)) {
       throw InputError("a training of another specification, expected the same; remove it or train in another folder");
     }
     trainer.load(file);
@@ -97,19 +100,16 @@ void write_checkpoint(const fs::path& path, const TrainedAgent& agent, const Tra
 }
 
 /// Where the weights come from that a training begins with.
-bool prepare(TrainedAgent& agent, const fs::path& folder, torch::Device device, bool quick,
+bool prepare(TrainedAgent& agent, const fs::path& folder, torch::Device device, const Effort& effort,
              const TrainingHooks& hooks) {
   const AgentSpec& spec = agent.spec;
-  if (!spec.start_from.empty()) {
-    AgentSpec first = recipe(spec.start_from, spec.eps, spec.training.seed, quick);
-    first.network = spec.network;
-    first.training.reward_scale = spec.training.reward_scale;
-    const auto start = train_agent(first, folder, device, quick, hooks);
+  if (const auto first = beginning_of(spec, effort)) {
+    const auto start = train_agent(*first, folder, device, effort, hooks);
     if (!start) return false;
     agent.q->copy_from(*start->q);
     if (auto* wocar = dynamic_cast<WocarLoss*>(agent.loss.get())) wocar->start_from(*start->q);
   }
-  return !spec.belief.starts_with("pf-") || train_particle_filter(agent, quick, hooks);
+  return !spec.belief.starts_with("pf-") || train_particle_filter(agent, effort.quick, hooks);
 }
 
 }  // namespace
@@ -130,13 +130,17 @@ std::vector<std::optional<double>> training_row(const CurvePoint& p) {
           number(p.belief_size)};
 }
 
-std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& folder, torch::Device device, bool quick,
-                                        const TrainingHooks& hooks) {
+std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& folder, torch::Device device,
+                                        const Effort& effort, const TrainingHooks& hooks) {
   const Files files(folder, spec.name());
-  if (auto done = finished(spec, files.agent)) return done;
-  fs::create_directories(folder);
+  std::error_code ignored;
+  if (auto done = finished(spec, files.agent)) {
+    fs::remove(files.checkpoint, ignored);  // of a run that ended between writing the agent and this
+    return done;
+  }
+  make_folder(folder);
   TrainedAgent agent = untrained(spec);
-  if (!prepare(agent, folder, device, quick, hooks)) return std::nullopt;
+  if (!prepare(agent, folder, device, effort, hooks)) return std::nullopt;
 
   TrainingParts parts;
   parts.online = agent.q;
@@ -163,7 +167,6 @@ std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& f
   agent.training_seconds = before + watch.seconds();
   agent.q->to(torch::kCPU);
   write_agent(files.agent, agent);
-  std::error_code ignored;
   fs::remove(files.checkpoint, ignored);
   return agent;
 }

@@ -13,8 +13,10 @@
 #include <maximin/deep/losses/wocar_loss.hpp>
 #include <maximin/deep/pf_rnn_belief.hpp>
 #include <maximin/deep/pf_rnn_file.hpp>
+#include <maximin/deep/report/json_fields.hpp>
 #include <maximin/deep/set_beliefs.hpp>
 #include <maximin/deep/tensor_file.hpp>
+#include <maximin/models/files/output_file.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -73,6 +75,11 @@ std::string tensor_bytes(const torch::Tensor& t) {
   return {static_cast<const char*>(t.data_ptr()), t.nbytes()};
 }
 
+std::filesystem::path times_file(std::filesystem::path agent) {
+  if (agent.extension() == ".agent") agent.replace_extension();
+  return agent += ".times.json";
+}
+
 }  // namespace
 
 Acting acting_of(const AgentSpec& spec) {
@@ -102,8 +109,6 @@ TrainedAgent untrained(const AgentSpec& spec) {
 void write_agent(const std::filesystem::path& path, const TrainedAgent& agent) {
   TensorFile file{"agent", {}, {}};
   file.about["specification"] = to_json(agent.spec);
-  file.about["training_seconds"] = agent.training_seconds;
-  file.about["belief_seconds"] = agent.belief_seconds;
   put_module(file, "q", *agent.q);
   const auto modules = agent.loss->modules();
   for (std::size_t i = 0; i < modules.size(); ++i) put_module(file, fmt::format("loss{}", i), *modules[i]);
@@ -112,12 +117,15 @@ void write_agent(const std::filesystem::path& path, const TrainedAgent& agent) {
     save_pf_rnn(bytes, *agent.particle_filter);
     file.tensors["particle_filter"] = bytes_tensor(bytes.str());
   }
+  const nlohmann::ordered_json times{{"training_seconds", agent.training_seconds},
+                                     {"belief_seconds", agent.belief_seconds}};
+  write_file(times_file(path), readable_json(times), Overwrite::replace);
   write_tensor_file(path, file);
 }
 
 TrainedAgent read_agent(const std::filesystem::path& path) {
   const TensorFile file = read_tensor_file(path, "agent");
-  if (!file.about.contains("specification")) {
+  if (!file.about.is_object() || !file.about.contains("specification")) {
     throw InputError(fmt::format("{}: no specification, expected an agent", path.string()));
   }
   AgentSpec spec;
@@ -134,8 +142,12 @@ TrainedAgent read_agent(const std::filesystem::path& path) {
   } catch (const InputError& e) {
     throw InputError(fmt::format("{}: {}", path.string(), e.what()));
   }
-  agent.training_seconds = file.about.value("training_seconds", 0.0);
-  agent.belief_seconds = file.about.value("belief_seconds", 0.0);
+  if (const std::filesystem::path times = times_file(path); std::filesystem::exists(times)) {
+    const nlohmann::ordered_json json = read_json_file(times, "training_seconds and belief_seconds");
+    const Fields fields(json, times.string());
+    agent.training_seconds = fields.number("training_seconds");
+    agent.belief_seconds = fields.number("belief_seconds");
+  }
   return agent;
 }
 

@@ -45,7 +45,8 @@ std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Actin
 /// Networks before training.
 TrainedAgent untrained(const AgentSpec& spec);
 
-/// The agent's file, kind "agent". Throws InputError as tensor files do.
+/// The agent's file, kind "agent", whose bytes depend on the training alone; how long that took stands beside it, in
+/// NAME.times.json. Throws InputError as tensor files do.
 void write_agent(const std::filesystem::path& path, const TrainedAgent& agent);
 TrainedAgent read_agent(const std::filesystem::path& path);
 
@@ -63,9 +64,9 @@ std::vector<std::optional<double>> training_row(const CurvePoint& point);
 /// Trains the agent in `folder`, where files stand by AgentSpec::name(): NAME.agent when done, NAME.csv the curve,
 /// NAME.training the checkpoint of a training under way, which a later call continues bit for bit. What the agent
 /// begins with (a vanilla DQN of the same seed, a particle filter) is trained first where it is not there. Returns the
-/// agent, from its file where it is there already; nothing where a hook stopped it. Throws InputError when a file there
-/// is of another specification.
+/// agent, from its file where it is there already; nothing where a hook stopped it. `effort` is that of what comes
+/// first; the agent's own is in its specification. Throws InputError when a file there is of another specification.
 std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const std::filesystem::path& folder,
-                                        torch::Device device, bool quick, const TrainingHooks& hooks);
+                                        torch::Device device, const Effort& effort, const TrainingHooks& hooks);
 
 }  // namespace maximin::deep

@@ -33,14 +33,18 @@ void TrainOptions::check() const {
   require(lanes >= 1 && lanes <= 4096, "lanes", lanes, "1 to 4096");
   require(horizon >= 1, "horizon", double(horizon), "at least 1");
   require(frames_per_update >= 1, "frames_per_update", double(frames_per_update), "at least 1");
-  require(batch >= 1, "batch", double(batch), "at least 1");
+  require(batch >= 1 && batch <= 65536, "batch", double(batch), "1 to 65536");
   require(learning_rate > 0, "learning_rate", learning_rate, "a positive number");
   require(final_learning_rate >= 0, "final_learning_rate", final_learning_rate, "0 or more");
+  require(adam_eps > 0, "adam_eps", adam_eps, "a positive number");
+  require(gradient_clip > 0, "gradient_clip", gradient_clip, "a positive number");
+  require(warm_up >= 0, "warm_up", double(warm_up), "0 or more");
   require(explore_start >= 0 && explore_start <= 1, "explore_start", explore_start, "0 to 1");
   require(explore_end >= 0 && explore_end <= 1, "explore_end", explore_end, "0 to 1");
   require(target_every >= 1, "target_every", double(target_every), "at least 1");
   require(reward_scale > 0, "reward_scale", reward_scale, "a positive number");
   require(stretch_frames >= lanes, "stretch_frames", double(stretch_frames), "at least one per lane");
+  replay.check();
 }
 
 Trainer::Trainer(const TrainOptions& options, TrainingParts parts)
@@ -70,6 +74,8 @@ Trainer::Trainer(const TrainOptions& options, TrainingParts parts)
   actions_.resize(n);
   pending_.resize(n);
   episodes_.resize(n);
+  const long states = parts_.belief->states_per_belief();
+  held_ = {torch::zeros({options_.lanes, states, 2}), torch::zeros({options_.lanes, states})};
 }
 
 double Trainer::exploration() const {
@@ -118,22 +124,18 @@ void Trainer::look(std::span<const Lane> lanes) {
   }
 }
 
-/// Keeps the belief just acted on, row `row`, for the transition that begins in the lane.
-void Trainer::keep_belief(long row, std::size_t lane) {
-  if (options_.bootstrap == BootstrapBelief::next) return;
-  const BeliefStates& belief = agent_->acted_on();
-  if (!held_.states.defined()) {
-    const auto many = [&](const torch::Tensor& one) {
-      return one[0].unsqueeze(0).repeat_interleave(options_.lanes, 0);
-    };
-    held_ = {many(belief.states), many(belief.weights)};
+/// Keeps the beliefs that the last look came to.
+void Trainer::hold(std::span<const Lane> lanes) {
+  const BeliefStates& seen = agent_->acted_on();
+  const long k = held_.weights.size(1);
+  for (std::size_t row = 0; row < lanes.size(); ++row) {
+    const long from = static_cast<long>(row), to = lanes[row];
+    std::copy_n(seen.states.data_ptr<float>() + 2 * k * from, 2 * k, held_.states.data_ptr<float>() + 2 * k * to);
+    std::copy_n(seen.weights.data_ptr<float>() + k * from, k, held_.weights.data_ptr<float>() + k * to);
   }
-  const auto l = static_cast<long>(lane);
-  held_.states[l].copy_(belief.states[row]);
-  held_.weights[l].copy_(belief.weights[row]);
 }
 
-/// Stores the transitions that waited for the belief now held, and begins episodes anew where one was cut.
+/// Stores the transitions that waited for the next belief, and begins episodes anew where one was cut.
 void Trainer::settle(std::span<const Lane> lanes) {
   std::vector<Lane> anew;
   for (std::size_t k = 0; k < lanes.size(); ++k) {
@@ -142,32 +144,27 @@ void Trainer::settle(std::span<const Lane> lanes) {
     learner_states_[l] = learner_state(static_cast<long>(k), truths_[l]);
     if (waiting.waiting) {
       waiting.transition.next = learner_states_[l];
-      if (options_.bootstrap == BootstrapBelief::next) {
-        replay_.add(waiting.transition, agent_->acted_on(), static_cast<long>(k));
-      } else {
-        replay_.add(waiting.transition, held_, lanes[k]);
-      }
+      const bool stale = options_.bootstrap == BootstrapBelief::current;
+      replay_.add(waiting.transition, stale ? held_ : agent_->acted_on(), stale ? lanes[k] : static_cast<long>(k));
       waiting.waiting = false;
     }
     if (waiting.truncated) {
       begin_episode(l);
       anew.push_back(lanes[k]);
-    } else {
-      keep_belief(static_cast<long>(k), l);
     }
   }
+  hold(lanes);
   if (anew.empty()) return;
   look(anew);
+  hold(anew);
   for (std::size_t k = 0; k < anew.size(); ++k) {
     const auto l = static_cast<std::size_t>(anew[k]);
     learner_states_[l] = learner_state(static_cast<long>(k), truths_[l]);
-    keep_belief(static_cast<long>(k), l);
   }
 }
 
 /// Every lane takes its action.
 void Trainer::move(CurvePoint& point) {
-  const BeliefStates before = agent_->acted_on();
   for (std::size_t l = 0; l < all_lanes_.size(); ++l) {
     const Outcome<Point> outcome = parts_.world->step(truths_[l], actions_[l], streams_[l]);
     Episode& episode = episodes_[l];
@@ -183,7 +180,7 @@ void Trainer::move(CurvePoint& point) {
       point.mean_return += episode.total_reward;
     }
     if (over) {
-      replay_.add(pending_[l].transition, before, 0);
+      replay_.add(pending_[l].transition, held_, static_cast<long>(l));
       begin_episode(l);
     } else {
       pending_[l].waiting = true;
@@ -195,7 +192,7 @@ void Trainer::move(CurvePoint& point) {
 
 /// The updates that are due.
 void Trainer::learn(CurvePoint& point, long& updates) {
-  if (frames_ < options_.warm_up) return;
+  if (frames_ < options_.warm_up || replay_.size() == 0) return;
   owed_ += static_cast<double>(all_lanes_.size()) / static_cast<double>(options_.frames_per_update);
   const double fraction = static_cast<double>(frames_) / static_cast<double>(options_.frames);
   const double rate =
@@ -205,12 +202,19 @@ void Trainer::learn(CurvePoint& point, long& updates) {
     const Replay::Draw draw = replay_.draw(options_.batch, fraction, draws_, parts_.device);
     const LossValue value = (*parts_.loss)(draw.batch, *parts_.online, *target_, {fraction});
     const torch::Tensor loss = (value.loss * draw.importance).mean();
+    const double size = loss.item<double>();
+    if (!std::isfinite(size)) {
+      throw InputError(
+          fmt::format("training: the loss is {} after {} frames, expected a number, as with a smaller "
+                      "learning_rate",
+                      size, frames_));
+    }
     optimiser_->zero_grad();
     loss.backward();
     torch::nn::utils::clip_grad_norm_(optimiser_->param_groups()[0].params(), options_.gradient_clip);
     optimiser_->step();
     replay_.reprioritise(draw.indices, value.td_error);
-    point.loss += loss.item<double>();
+    point.loss += size;
     ++updates;
   }
   if (frames_ - copied_at_ >= options_.target_every) {
@@ -225,7 +229,10 @@ CurvePoint Trainer::stretch() {
   long updates = 0, looks = 0, held = 0;
   double area = 0;
   begin_lanes();
-  const long ticks = std::max(1L, std::min(options_.stretch_frames, options_.frames - frames_) / options_.lanes);
+  // What would be less than half a stretch belongs to the one before it.
+  const long left = options_.frames - frames_;
+  const long wanted = 2 * left < 3 * options_.stretch_frames ? left : options_.stretch_frames;
+  const long ticks = (wanted + options_.lanes - 1) / options_.lanes;
   for (long tick = 0; tick < ticks; ++tick) {
     agent_->set_random_actions(exploration());
     look(all_lanes_);
@@ -274,6 +281,7 @@ void Trainer::load(const TensorFile& file) {
   torch::Tensor counters = torch::zeros({4}, torch::kInt64), owed = torch::zeros({1}, torch::kDouble);
   file.copy_to("counters", counters);
   file.copy_to("owed", owed);
+  if (counters.lt(0).any().item<bool>()) throw InputError("counters below 0, expected what a training counted");
   get_module(file, "online", *parts_.online);
   get_module(file, "target", *target_);
   const auto modules = parts_.loss->modules();
@@ -283,7 +291,7 @@ void Trainer::load(const TensorFile& file) {
   std::istringstream optimiser(std::string(static_cast<const char*>(bytes.data_ptr()), bytes.nbytes()));
   try {
     torch::load(*optimiser_, optimiser);
-  } catch (const c10::Error&) {
+  } catch (const std::exception&) {
     throw InputError("optimiser of another kind or version of LibTorch, expected the one that wrote it");
   }
   frames_ = counters[0].item<long>();

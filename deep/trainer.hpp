@@ -81,15 +81,17 @@ class Trainer {
 
   long frames() const { return frames_; }
   bool done() const { return frames_ >= options_.frames; }
-  /// Plays and learns for the next stretch, of `stretch_frames` or what is left, in whole ticks.
+  /// Plays and learns for the next stretch, of `stretch_frames` or what is left, in whole ticks. Throws InputError when
+  /// the loss is no number any more.
   CurvePoint stretch();
 
   const TrainOptions& options() const { return options_; }
   BeliefAgent& agent() { return *agent_; }
   QNetworkPtr online() const { return parts_.online; }
 
-  /// Networks, optimiser, replay memory and counters; and back, into a trainer of the same options. `load` throws
-  /// InputError when the file is of another training.
+  /// Networks, optimiser, replay memory and counters, which share their numbers with the trainer: write them before it
+  /// goes on. And back, into a trainer of the same options; `load` throws InputError when the file is of another
+  /// training.
   void save(TensorFile& file) const;
   void load(const TensorFile& file);
 
@@ -103,8 +105,8 @@ class Trainer {
   void begin_lanes();
   void begin_episode(std::size_t lane);
   void look(std::span<const Lane> lanes);
+  void hold(std::span<const Lane> lanes);
   void settle(std::span<const Lane> lanes);
-  void keep_belief(long row, std::size_t lane);
   void move(CurvePoint& point);
   void learn(CurvePoint& point, long& updates);
   Point learner_state(long row, Point truth) const;
@@ -125,8 +127,8 @@ class Trainer {
   Stream draws_{0};
   std::vector<Point> truths_, shown_, learner_states_;
   std::vector<Action> actions_;
+  BeliefStates held_;  // M_t of every lane
   std::vector<Pending> pending_;
-  BeliefStates held_;  // M_t of each lane, where the target wants it instead of M_{t+1}
   std::vector<Episode> episodes_;
 };
 

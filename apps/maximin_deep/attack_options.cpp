@@ -20,6 +20,7 @@ void add_attack_options(CLI::App& sub, AttackedAgent& o) {
   sub.add_option("--random-actions", o.random_actions, "Share of random actions, in place of its own")
       ->check(real_number({.low = 0, .high = 1}));
   sub.add_option("--attack-seed", o.attack_seed, "Seed of a learned attack's training")->check(seed_number());
+  sub.add_option("--attacker", o.attacker, "File of a learned attack: read where it exists, else written");
   sub.add_flag("--quick", o.quick, "Learned attacks learn for seconds");
 }
 
@@ -32,6 +33,7 @@ Match prepare_match(const AttackedAgent& o) {
   if (!spec.knows_eps()) spec.eps = match.eps;
   match.acting = deep::acting_of(spec);
   if (!o.belief.empty()) match.acting.belief = o.belief;
+  if (!o.belief.empty() && o.belief != spec.belief) match.acting.belief_states = 32;  // as in the table's ablation
   if (!o.aggregator.empty()) match.acting.aggregator = o.aggregator;
   if (o.random_actions >= 0) match.acting.random_actions = o.random_actions;
   match.agent = deep::make_agent(*match.trained, match.acting);
@@ -47,6 +49,7 @@ Match prepare_match(const AttackedAgent& o) {
   setting.eps = match.eps;
   setting.seed = o.attack_seed;
   setting.quick = o.quick;
+  setting.file = o.attacker;
   match.attack = deep::make_attack(setting, target);
   return match;
 }

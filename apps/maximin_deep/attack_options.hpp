@@ -21,6 +21,7 @@ struct AttackedAgent {
   std::string belief, aggregator;  ///< in place of the agent's own; empty: its own
   double random_actions = -1;
   std::uint64_t attack_seed = 1;
+  std::filesystem::path attacker;  ///< where a learned attack is kept
   bool quick = false;
 };
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -33,15 +34,16 @@ struct TableCommand {
   fs::path folder = "runs";
   fs::path output = "results";
   int seeds = 3;
-  std::uint64_t first_seed = 0;  ///< 0: 1 for the table, 101 for the choice of an aggregator
+  std::optional<std::uint64_t> first_seed;  ///< unless given: 1 for the table, 101 for the choice of an aggregator
   long episodes = 100;
-  std::vector<std::string> only;
+  std::vector<std::string> only, attacks;  ///< what is left in; empty: all
   int jobs = 1;
   bool quick = false;
+  long frames = 0;  ///< of each training; 0: what the recipes say
 
+  deep::Effort effort() const { return {quick, frames}; }
   std::uint64_t seed(int k) const {
-    const std::uint64_t first = first_seed > 0 ? first_seed : kind == "aggregators" ? 101 : 1;
-    return first + static_cast<std::uint64_t>(k);
+    return first_seed.value_or(kind == "aggregators" ? 101 : 1) + static_cast<std::uint64_t>(k);
   }
 };
 
@@ -69,11 +71,13 @@ class TableMaker {
     table.version = MAXIMIN_VERSION;
     table.command = fmt::format("maximin_deep table {} --seeds {} --episodes {}{}", command_.kind, command_.seeds,
                                 command_.episodes, command_.quick ? " --quick" : "");
+    if (command_.frames > 0) table.command += fmt::format(" --frames {}", command_.frames);
     table.configuration["episodes"] = command_.episodes;
     table.configuration["quick"] = command_.quick;
+    if (command_.frames > 0) table.configuration["frames"] = command_.frames;
     std::set<std::string> kinds;
     for (const PlannedCell& cell : plan_) {
-      const deep::AgentSpec spec = spec_of(cell, command_.seed(0), command_.quick);
+      const deep::AgentSpec spec = spec_of(cell, command_.seed(0), command_.effort());
       if (kinds.insert(spec.name()).second) table.configuration["agents"][spec.name()] = deep::to_json(spec);
       deep::ResultBlock* block = table.find(cell.block);
       if (!block) block = &table.blocks.emplace_back(deep::ResultBlock{cell.block, "", {}});
@@ -88,9 +92,9 @@ class TableMaker {
     std::set<std::string> names;
     for (int k = 0; k < command_.seeds; ++k) {
       for (const PlannedCell& cell : plan_) {
-        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.quick);
+        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.effort());
         add_training(first, spec, specs, names);
-        const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, command_.seed(k), command_.quick);
+        const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, command_.seed(k), command_.effort());
         add_training(first, vanilla, specs, names);
       }
     }
@@ -98,7 +102,7 @@ class TableMaker {
     std::vector<std::function<void()>> jobs;
     for (const deep::AgentSpec& spec : specs) {
       jobs.emplace_back([&, spec] {
-        deep::train_agent(spec, command_.folder, torch::kCPU, command_.quick, line_.hooks(stop_));
+        deep::train_agent(spec, command_.folder, torch::kCPU, command_.effort(), line_.hooks(stop_));
         line_.say("");
         line_.done(++done, static_cast<long>(specs.size()));
       });
@@ -146,23 +150,25 @@ class TableMaker {
 
   /// The agent of a cell and the attack on it. Its attack is empty where it was interrupted.
   Ready prepare(const PlannedCell& cell, std::uint64_t seed) {
-    const deep::AgentSpec spec = spec_of(cell, seed, command_.quick);
+    const deep::AgentSpec spec = spec_of(cell, seed, command_.effort());
     Ready ready{deep::read_agent(agent_file(spec)), deep::acting_of(spec), nullptr, nullptr};
     if (!cell.belief.empty()) ready.acting.belief = cell.belief;
     if (!cell.aggregator.empty()) ready.acting.aggregator = cell.aggregator;
     if (!cell.belief.empty()) ready.acting.belief_states = 32;
+    if (cell.random_actions >= 0) ready.acting.random_actions = cell.random_actions;
     // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
     if (!spec.knows_eps()) ready.trained.spec.eps = cell.attack_eps;
     ready.agent = deep::make_agent(ready.trained, ready.acting);
-    const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, seed, command_.quick);
+    const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, seed, command_.effort());
     const deep::AttackTarget target{&ready.trained, ready.acting, deep::read_agent(agent_file(vanilla)).values()};
     deep::AttackSetting setting;
     setting.name = cell.attack;
     setting.eps = cell.attack_eps;
     setting.seed = seed;
     setting.quick = command_.quick;
-    setting.file = command_.folder / fmt::format("{}-{}{}-{}-eps{:g}.attacker", spec.name(), ready.acting.belief,
-                                                 cell.aggregator, cell.attack, cell.attack_eps);
+    setting.file = command_.folder / fmt::format("{}-{}-{}-random{:g}-{}-eps{:g}.attacker", spec.name(),
+                                                 ready.acting.belief, ready.acting.aggregator,
+                                                 ready.acting.random_actions, cell.attack, cell.attack_eps);
     setting.progress = [this, &cell](double share, double) {
       line_.say(fmt::format("{} / {} {:g}: learns, {:.0f} %", cell.cell.agent, cell.cell.attack, cell.attack_eps,
                             100 * share));
@@ -191,7 +197,7 @@ class TableMaker {
     std::set<std::string> names;
     for (int k = 0; k < command_.seeds; ++k) {
       for (const PlannedCell& cell : plan_) {
-        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.quick);
+        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.effort());
         const fs::path log = command_.folder / (spec.name() + ".csv");
         if (!names.insert(spec.name()).second || !fs::exists(log)) continue;
         const std::string title = spec.knows_eps() ? fmt::format("{} {:g}", cell.kind, spec.eps) : cell.kind;
@@ -236,15 +242,16 @@ class TableMaker {
 
 int make_table(const TableCommand& command) {
   std::vector<PlannedCell> plan = command.kind == "aggregators" ? aggregators_plan() : gridworld_plan();
-  if (!command.only.empty()) {
-    std::erase_if(plan, [&](const PlannedCell& c) {
-      return std::find(command.only.begin(), command.only.end(), c.kind) == command.only.end();
-    });
-  }
-  if (plan.empty()) throw InputError("--only: names no agent of the table, expected e.g. dqn");
+  const auto left_out = [](const std::vector<std::string>& left_in, const std::string& name) {
+    return !left_in.empty() && std::find(left_in.begin(), left_in.end(), name) == left_in.end();
+  };
+  std::erase_if(plan, [&](const PlannedCell& c) {
+    return left_out(command.only, c.kind) || left_out(command.attacks, c.attack);
+  });
+  if (plan.empty()) throw InputError("--only, --attacks: no such cell in the table, expected e.g. --only bp-dqn");
   if (command.quick) note("--quick: everything in small, to see that it works; the numbers mean nothing");
-  fs::create_directories(command.folder);
-  fs::create_directories(command.output);
+  make_folder(command.folder);
+  make_folder(command.output);
   return TableMaker(command, std::move(plan)).run();
 }
 
@@ -267,10 +274,15 @@ void add_table(CLI::App& app, Task& task) {
       ->check(whole_number(2, 1'000'000))
       ->capture_default_str();
   sub->add_option("--only", command->only, "Agents to leave in, e.g. dqn bp-dqn")->check(one_of(deep::agent_kinds()));
+  std::vector<std::string> attacks;
+  for (const auto& attack : deep::named_attacks()) attacks.push_back(attack.name);
+  sub->add_option("--attacks", command->attacks, "Attacks to leave in, e.g. none pgd")->check(one_of(attacks));
   sub->add_option("--jobs", command->jobs, "Trainings and evaluations side by side")
       ->check(whole_number(1, 256))
       ->capture_default_str();
   sub->add_flag("--quick", command->quick, "About two minutes, to see it work");
+  sub->add_option("--frames", command->frames, "So many frames of each training, in place of the recipes'")
+      ->check(whole_number(1, 1'000'000'000));
   sub->footer(
       "A table that was cut goes on where it stopped.\n"
       "Examples:\n"

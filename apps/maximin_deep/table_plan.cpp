@@ -138,8 +138,8 @@ std::vector<std::string> attacks_where(bool adaptive) {
 
 }  // namespace
 
-deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, bool quick) {
-  deep::AgentSpec spec = deep::recipe(cell.kind, cell.trained_eps, seed, quick);
+deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, const deep::Effort& effort) {
+  deep::AgentSpec spec = deep::recipe(cell.kind, cell.trained_eps, seed, effort);
   if (!cell.config.empty()) deep::merge_json(spec, nlohmann::ordered_json::parse(cell.config), "plan");
   return spec;
 }
@@ -159,14 +159,23 @@ std::vector<PlannedCell> gridworld_plan() {
 }
 
 std::vector<PlannedCell> aggregators_plan() {
+  struct Choice {
+    const char* aggregator;
+    double random_actions;
+  };
   std::vector<PlannedCell> plan;
-  for (const char* aggregator : {"min", "cvar:0.25", "cvar:0.5", "soft-min:1", "mean"}) {
+  for (const Choice& choice : {Choice{"min", 0}, Choice{"cvar:0.25", 0}, Choice{"cvar:0.5", 0}, Choice{"soft-min:1", 0},
+                               Choice{"mean", 0}, Choice{"mean", 0.02}, Choice{"mean", 0.05}}) {
     const std::size_t first = plan.size();
-    std::vector<std::string> all{"none", "pgd", "constant-offset"};
+    std::vector<std::string> all = attacks_where(false);
     for (const std::string& name : attacks_where(true)) all.push_back(name);
-    add_columns(plan, aggregator_block, {"bp-dqn", aggregator}, all);
+    const std::string title = choice.random_actions > 0 ? fmt::format("{}, {:g} % random actions", choice.aggregator,
+                                                                      100 * choice.random_actions)
+                                                        : choice.aggregator;
+    add_columns(plan, aggregator_block, {"bp-dqn", title.c_str()}, all);
     for (std::size_t i = first; i < plan.size(); ++i) {
-      plan[i].config = fmt::format(R"({{"kind": "bp-dqn-{0}", "aggregator": "{0}"}})", aggregator);
+      plan[i].config = fmt::format(R"({{"kind": "bp-dqn-{0}", "aggregator": "{0}"}})", choice.aggregator);
+      plan[i].random_actions = choice.random_actions;
     }
   }
   return plan;

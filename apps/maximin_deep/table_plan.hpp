@@ -15,15 +15,16 @@ struct PlannedCell {
   deep::ResultCell cell;  ///< titles, the paper's figure, the target; no runs yet
   std::string kind;       ///< of the agent that is trained, e.g. "bp-dqn"
   double trained_eps = 0.1;
-  std::string config;      ///< JSON that changes the recipe; empty: none
-  std::string belief;      ///< acts by this belief instead of its own; empty: its own
-  std::string aggregator;  ///< and by this aggregator
-  std::string attack;      ///< name of the attack
+  std::string config;          ///< JSON that changes the recipe; empty: none
+  std::string belief;          ///< acts by this belief instead of its own; empty: its own
+  std::string aggregator;      ///< and by this aggregator
+  double random_actions = -1;  ///< share of random actions; negative: its own
+  std::string attack;          ///< name of the attack
   double attack_eps = 0;
 };
 
 /// What is to be trained for a cell.
-deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, bool quick);
+deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, const deep::Effort& effort);
 
 /// The paper's table of the continuous Gridworld, its ablation and its noisy environment, each with adaptive attacks
 /// beside; and, to choose BP-DQN's aggregator before that table is seen, `aggregators`, on other seeds.

@@ -1,6 +1,6 @@
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <set>
 #include <string>
@@ -16,6 +16,7 @@
 #include <maximin/apps/maximin_deep/commands.hpp>
 #include <maximin/apps/maximin_deep/device.hpp>
 #include <maximin/apps/maximin_deep/workers.hpp>
+#include <maximin/deep/report/json_fields.hpp>
 #include <maximin/deep/trained_agent.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -33,19 +34,23 @@ struct TrainCommand {
   std::string device = "cpu";
   int jobs = 1;
   bool quick = false, print_config = false, json = false;
+  long frames = 0;
+
+  deep::Effort effort() const { return {quick, frames}; }
 };
 
-nlohmann::ordered_json read_config(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  if (!in) throw InputError(path.string() + ": cannot be read, expected a JSON file");
-  try {
-    return nlohmann::ordered_json::parse(in, nullptr, true, true);
-  } catch (const nlohmann::json::exception& e) {
-    throw InputError(path.string() + ": no JSON: " + e.what());
+/// Puts what others begin with before them: it is trained once, not by each of them at the same time.
+void add_beginnings(std::vector<deep::AgentSpec>& specs, const deep::Effort& effort) {
+  std::set<std::string> names;
+  for (const deep::AgentSpec& spec : specs) names.insert(spec.name());
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const auto first = deep::beginning_of(specs[i], effort);
+    if (first && names.insert(first->name()).second) specs.push_back(*first);
   }
+  std::stable_partition(specs.begin(), specs.end(), [](const deep::AgentSpec& s) { return s.start_from.empty(); });
 }
 
-/// What is to be trained, vanilla agents first: others begin with them.
+/// What is asked for.
 std::vector<deep::AgentSpec> planned(const TrainCommand& command) {
   std::vector<deep::AgentSpec> specs;
   std::set<std::string> names;
@@ -53,27 +58,28 @@ std::vector<deep::AgentSpec> planned(const TrainCommand& command) {
     if (names.insert(spec.name()).second) specs.push_back(spec);
   };
   const bool configured = !command.config.empty();
-  const nlohmann::ordered_json config = configured ? read_config(command.config) : nlohmann::ordered_json::object();
+  const nlohmann::ordered_json config =
+      configured ? deep::read_json_file(command.config, "JSON with fields of a specification") : Json::object();
   for (int k = 0; k < command.seeds; ++k) {
     for (const std::string& kind : command.kinds) {
       deep::AgentSpec spec =
-          deep::recipe(kind, command.eps, command.seed + static_cast<std::uint64_t>(k), command.quick);
+          deep::recipe(kind, command.eps, command.seed + static_cast<std::uint64_t>(k), command.effort());
       deep::merge_json(spec, config, configured ? command.config.string() : "configuration");
       add(spec);
     }
   }
-  std::stable_partition(specs.begin(), specs.end(), [](const deep::AgentSpec& s) { return s.start_from.empty(); });
   return specs;
 }
 
 int train(const TrainCommand& command) {
-  const std::vector<deep::AgentSpec> specs = planned(command);
+  std::vector<deep::AgentSpec> specs = planned(command);
   if (command.print_config) {
     Json all = Json::array();
     for (const deep::AgentSpec& spec : specs) all.push_back(deep::to_json(spec));
     print(json_text(specs.size() == 1 ? all[0] : Json{{"agents", all}}));
     return ExitCode::success;
   }
+  add_beginnings(specs, command.effort());
   const torch::Device device = device_named(command.device);
   if (command.quick) note("--quick: a training of seconds, which shows that everything works and no more");
   const std::atomic<bool>& stop = stop_on_interrupt();
@@ -87,7 +93,7 @@ int train(const TrainCommand& command) {
     for (std::size_t i = 0; i < specs.size(); ++i) {
       if (specs[i].start_from.empty() != first) continue;
       jobs.emplace_back([&, i] {
-        trained[i] = deep::train_agent(specs[i], command.folder, device, command.quick, line.hooks(stop));
+        trained[i] = deep::train_agent(specs[i], command.folder, device, command.effort(), line.hooks(stop));
         line.say("");
         line.done(++done, static_cast<long>(specs.size()));
       });
@@ -136,6 +142,8 @@ void add_train(CLI::App& app, Task& task) {
       ->check(whole_number(1, 256))
       ->capture_default_str();
   sub->add_flag("--quick", command->quick, "About two minutes, to see it work");
+  sub->add_option("--frames", command->frames, "So many frames of each training, in place of the recipes'")
+      ->check(whole_number(1, 1'000'000'000));
   sub->add_flag("--json", command->json, "Print the result as JSON");
   sub->footer(
       "Examples:\n"

@@ -10,6 +10,7 @@
 #include <maximin/deep/evaluation.hpp>
 #include <maximin/deep/report/animation.hpp>
 #include <maximin/models/files/output_file.hpp>
+#include <maximin/theory/error.hpp>
 
 namespace maximin::apps {
 
@@ -32,6 +33,9 @@ int watch(const WatchCommand& command) {
   trace.attack = command.options.attack;
   trace.training_seed = match.trained->spec.training.seed;
   const Overwrite overwrite = command.force ? Overwrite::replace : Overwrite::refuse;
+  if (!command.force && !command.trace.empty() && std::filesystem::exists(command.trace)) {
+    throw InputError(command.trace.string() + ": exists, expected a new file name, or --force to replace it");
+  }
   write_file(command.output, deep::animated_svg(trace), overwrite);
   if (!command.trace.empty()) deep::write_trace(command.trace, trace);
   print(fmt::format("{}: {} under {}, eps {:g}, episode {}: {}\n", command.output.string(), trace.agent, trace.attack,
@@ -57,7 +61,7 @@ void add_watch(CLI::App& app, Task& task) {
       ->capture_default_str();
   sub->add_option("-o,--output", command->output, "SVG file, for any browser")->capture_default_str();
   sub->add_option("--trace", command->trace, "Write the steps as JSON too");
-  sub->add_flag("--force", command->force, "Replace the file if it exists");
+  sub->add_flag("--force", command->force, "Replace files that exist");
   sub->footer(
       "Example:\n"
       "  maximin_deep watch runs/bp-dqn-eps0.5-seed1.agent --attack best-response -o episode.svg");

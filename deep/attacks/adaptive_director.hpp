@@ -10,7 +10,7 @@ namespace maximin::deep {
 
 struct AdaptiveDirectorOptions {
   DirectorOptions director{.hidden = {128, 128}};
-  int grid = 5;  ///< it chooses out of grid x grid places over the ball, corners included
+  int grid = 3;  ///< it chooses out of grid x grid places over the ball, corners included
   /// Before it has learned anything it chooses as by softmax of -prior times the judge's value of what each place would
   /// provoke, on a scale where the judge's best and worst action are 1 apart. 0: evenly.
   double prior = 6;

@@ -5,10 +5,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <maximin/deep/attacks/adaptive_director.hpp>
 #include <maximin/deep/attacks/best_response_attack.hpp>
+#include <maximin/deep/attacks/director_training.hpp>
 #include <maximin/deep/attacks/gradient_attack.hpp>
 #include <maximin/deep/attacks/offset_attack.hpp>
+#include <maximin/deep/attacks/pa_ad_attack.hpp>
 #include <maximin/deep/attacks/simple_attacks.hpp>
+#include <maximin/deep/attacks/through_defence_attack.hpp>
+#include <maximin/deep/tensor_file.hpp>
 #include <maximin/models/nearest_name.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -22,17 +27,70 @@ std::shared_ptr<GridAttack> gradient(const AttackSetting& setting, const AttackT
   return std::make_shared<GradientAttack>(target.agent->values(), ObservationBall(setting.eps), options);
 }
 
+/// Reads the director's file, or teaches it against the agent and writes it. False where it was interrupted.
+bool learn(Director& director, BeliefAgent& victim, const AttackSetting& setting) {
+  if (!setting.file.empty() && std::filesystem::exists(setting.file)) {
+    try {
+      director.load(read_tensor_file(setting.file, "attacker"));
+    } catch (const InputError& e) {
+      const std::string what = e.what(), file = setting.file.string();
+      throw InputError(what.starts_with(file) ? what : fmt::format("{}: {}", file, what));
+    }
+    return true;
+  }
+  DirectorTraining training;
+  training.seed = setting.seed;
+  if (setting.quick) {
+    training.frames = 10'000;
+    training.stretch_frames = 5'000;
+    training.evaluation_episodes = 32;
+  }
+  bool stopped = false;
+  train_director(director, victim, ContinuousGridworld(), training, [&](const DirectorPoint& point) {
+    const double share = static_cast<double>(point.frames) / static_cast<double>(training.frames);
+    stopped = setting.progress && !setting.progress(share, std::min(point.sampled_return, point.greedy_return));
+    return !stopped;
+  });
+  if (stopped) return false;
+  // Whoever plays with it plays as its file would have it.
+  if (!setting.file.empty()) write_tensor_file(setting.file, director.save());
+  return true;
+}
+
+std::shared_ptr<GridAttack> learned(const AttackSetting& setting, const AttackTarget& target) {
+  const ObservationBall ball(setting.eps);
+  std::shared_ptr<Director> director;
+  Acting victim = target.acting;
+  if (setting.name == "director") {
+    AdaptiveDirectorOptions options;
+    options.director.seed = setting.seed;
+    director = std::make_shared<AdaptiveDirector>(target.judge, ball, options);
+  } else {
+    PaAdOptions options;
+    options.director.seed = setting.seed;
+    director = std::make_shared<PaAdAttack>(target.agent->values(), ball, options);
+    // The paper's attacker knows the network and no belief.
+    if (setting.name == "pa-ad") victim = {"observed", 1, "mean", 0};
+  }
+  const auto agent = make_agent(*target.agent, victim);
+  return learn(*director, *agent, setting) ? director : nullptr;
+}
+
 }  // namespace
 
 const std::vector<NamedAttack>& named_attacks() {
   static const std::vector<NamedAttack> attacks{
       {"none", "natural", false, false},
       {"random", "random", false, false},
-      {"constant-offset", "constant offset", false, false},
+      {"constant-offset", "constant offset", true, false},
       {"pgd", "PGD", false, false},
       {"pgd-released", "PGD, cross-entropy", false, false},
       {"min-best", "MinBest", false, false},
+      {"pa-ad", "PA-AD", false, true},
       {"best-response", "best response", true, false},
+      {"through-defence", "descent through the defence", true, false},
+      {"pa-ad-adaptive", "PA-AD against the whole defence", true, true},
+      {"director", "director against the whole defence", true, true},
   };
   return attacks;
 }
@@ -57,7 +115,9 @@ std::shared_ptr<GridAttack> make_attack(const AttackSetting& setting, const Atta
   if (name == "pgd") return gradient(setting, target, AttackObjective::value);
   if (name == "pgd-released") return gradient(setting, target, AttackObjective::cross_entropy);
   if (name == "min-best") return gradient(setting, target, AttackObjective::min_best);
-  return std::make_shared<BestResponseAttack>(target.judge, ball, BestResponseOptions{});
+  if (name == "best-response") return std::make_shared<BestResponseAttack>(target.judge, ball, BestResponseOptions{});
+  if (name == "through-defence") return std::make_shared<ThroughDefenceAttack>(target.judge, ball);
+  return learned(setting, target);
 }
 
 }  // namespace maximin::deep

@@ -16,7 +16,7 @@ namespace maximin::deep {
 struct NamedAttack {
   std::string name;
   std::string title;      ///< in tables
-  bool adaptive = false;  ///< knows the whole defence, belief and aggregator and all
+  bool adaptive = false;  ///< made against the whole defence, belief and aggregator and all
   bool learned = false;   ///< is trained, for minutes, against one agent
 };
 

@@ -10,12 +10,12 @@
 
 namespace maximin::deep {
 
-/// (1 - share) Q + share Q_w: the action values of a worst-case aware agent. Neither network is registered here: they
-/// are saved and trained where they belong.
+/// (1 - share) Q + share Q_w: the action values of a worst-case aware agent. Both networks are registered here, so that
+/// whoever acts by them finds their device; they are saved and trained where they belong.
 class WorstCaseAwareValues final : public ActionValueModule {
  public:
   WorstCaseAwareValues(QNetworkPtr q, QNetworkPtr worst, double share)
-      : q_(std::move(q)), worst_(std::move(worst)), share_(share) {}
+      : q_(register_module("q", std::move(q))), worst_(register_module("worst", std::move(worst))), share_(share) {}
   torch::Tensor forward(const torch::Tensor& states) override {
     return (1 - share_) * q_->forward(states) + share_ * worst_->forward(states);
   }

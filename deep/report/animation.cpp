@@ -85,12 +85,26 @@ std::string step_words(const MapFrame& f, std::size_t time, const std::string& w
          svg_text(f.left + f.extent, head - 12, "return " + plain_reward(total), "strong end");
 }
 
+/// Where the legend speaks of the belief.
+Point belief_key(const MapFrame& f) {
+  return {f.left + 150, f.top + f.extent + 64};
+}
+
+/// What the belief is, in the legend of a step: its area tells how much the agent knows.
+std::string belief_words(const MapFrame& f, const TraceBelief& belief) {
+  std::string words = "held possible";
+  if (!belief.boxes.empty()) words += fmt::format(", area {:.2g}", BoxUnion(belief.boxes).area());
+  if (!belief.points.empty()) words += fmt::format(", {} particles", belief.points.size());
+  return svg_text(belief_key(f).x + 26, belief_key(f).y, words);
+}
+
 /// All that is seen in one step and no other.
 std::string step_group(const MapFrame& f, const EpisodeTrace& trace, const AnimationOptions& o, const Clock& clock,
                        std::size_t k, Point next, double total) {
   const TraceStep& s = trace.steps[k];
   std::string svg = fmt::format("<g visibility=\"{}\">{}\n", k == 0 ? "visible" : "hidden", clock.only_in(k));
   if (o.belief) svg += belief_marks(f, s.belief);
+  if (o.belief && !s.belief.empty()) svg += belief_words(f, s.belief);
   svg += ball_mark(f, s.truth, trace.eps) + svg_move(f, s.truth, s.action, next == s.truth);
   svg += shown_mark(f, s.truth, s.shown);
   const bool cancelled = next == s.truth;
@@ -152,7 +166,8 @@ std::string time_bar(const MapFrame& f, const Clock& clock) {
 }
 
 std::string legend(const MapFrame& f, const EpisodeTrace& trace, bool belief) {
-  const double y1 = f.top + f.extent + 38, y2 = y1 + 26, x1 = f.left + 10, x2 = f.left + 150;
+  const Point key = belief_key(f);
+  const double y2 = key.y, y1 = y2 - 26, x1 = f.left + 10, x2 = key.x;
   std::string svg =
       fmt::format("<circle class=\"truth\" cx=\"{}\" cy=\"{}\" r=\"7\"/>", svg_number(x1), svg_number(y1 - 5));
   svg += svg_text(x1 + 16, y1, "true position");
@@ -168,7 +183,7 @@ std::string legend(const MapFrame& f, const EpisodeTrace& trace, bool belief) {
   if (!belief) return svg;
   svg += fmt::format("<rect class=\"belief\" x=\"{}\" y=\"{}\" width=\"18\" height=\"14\"/>", svg_number(x2),
                      svg_number(y2 - 12));
-  return svg + svg_text(x2 + 26, y2, "held possible (belief)");
+  return svg;
 }
 
 }  // namespace

@@ -22,6 +22,11 @@ std::string excerpt(const Json& json) {
   return text;
 }
 
+/// What was read from text is unsigned where it can be; what a program put there may be signed.
+bool is_whole(const Json& json) {
+  return json.is_number_unsigned() || (json.is_number_integer() && json.get<std::int64_t>() >= 0);
+}
+
 std::string on_one_line(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -87,7 +92,7 @@ double Fields::number(std::string_view key) const {
 
 std::uint64_t Fields::whole(std::string_view key) const {
   const Json& v = any(key);
-  if (!v.is_number_unsigned()) refuse(key, excerpt(v) + ", expected a whole number >= 0");
+  if (!is_whole(v)) refuse(key, excerpt(v) + ", expected a whole number >= 0");
   return v.get<std::uint64_t>();
 }
 
@@ -145,7 +150,7 @@ void Fields::expect_schema(std::string_view schema, std::uint64_t version) const
   if (it == json_->end()) refuse("schema", "not there" + expected);
   if (!it->is_string() || it->get<std::string>() != schema) refuse("schema", excerpt(*it) + expected);
   const Json& found = any("schema_version");
-  if (!found.is_number_unsigned() || found.get<std::uint64_t>() != version) {
+  if (!is_whole(found) || found.get<std::uint64_t>() != version) {
     refuse("schema_version", excerpt(found) + expected);
   }
 }

@@ -62,16 +62,17 @@ Point corner_of(const TraceBelief& belief) {
   return best;
 }
 
-/// A dot for what follows the path, with its time.
+/// The time of a belief above it, or as near to that as the map's edge allows.
 std::string time_mark(const MapFrame& f, Point at, const std::string& time) {
-  return svg_text(f.x(at.x), f.y(at.y) - 8, time, "time mid");
+  const double half = svg_width(time, 15) / 2 + 4;
+  const double x = std::clamp(f.x(at.x), f.left + half, f.left + f.extent - half);
+  return svg_text(x, std::max(f.y(at.y) - 6, f.top + 16), time, "time mid");
 }
 
 }  // namespace
 
 std::string belief_marks(const MapFrame& f, const TraceBelief& belief) {
-  std::string svg;
-  for (const Box& b : belief.boxes) svg += svg_box(f, b, "belief");
+  std::string svg = svg_area(f, belief.boxes);
   double heaviest = 0;
   for (const double w : belief.weights) heaviest = std::max(heaviest, w);
   for (std::size_t k = 0; k < belief.points.size(); ++k) {
@@ -93,8 +94,9 @@ std::string truth_mark(const MapFrame& f, Point at) {
 }
 
 std::string shown_mark(const MapFrame& f, Point truth, Point shown) {
-  return fmt::format("<path class=\"tie\" d=\"M{}L{}\"/>{}\n", f.place(truth), f.place(shown), ring(f, shown, 6)) +
-         fmt::format("<path class=\"shown\" d=\"M{}h8m-4 -4v8\"/>", svg_place(f.x(shown.x) - 4, f.y(shown.y)));
+  if (shown == truth) return ring(f, shown, 10.5) + '\n';
+  return fmt::format("<path class=\"tie\" d=\"M{}L{}\"/>{}", f.place(truth), f.place(shown), ring(f, shown, 6)) +
+         fmt::format("<path class=\"shown\" d=\"M{}h8m-4 -4v8\"/>\n", svg_place(f.x(shown.x) - 4, f.y(shown.y)));
 }
 
 std::vector<long> moments(const EpisodeTrace& trace, int count) {
@@ -215,6 +217,8 @@ svg.map .start { fill: var(--floor); stroke: var(--truth); stroke-width: 3; }
 svg.map .shown { fill: none; stroke: var(--shown); stroke-width: 2.2; }
 svg.map .tie { stroke: var(--shown); stroke-width: 1.4; stroke-dasharray: 3 3; }
 svg.map .ball { fill: none; stroke: var(--shown); stroke-width: 1.5; stroke-dasharray: 5 4; }
+svg.map path.area { fill: var(--belief); fill-opacity: .3; }
+svg.map .area-edge { stroke: var(--belief); stroke-width: 2; }
 svg.map .belief { fill: var(--belief); fill-opacity: .3; stroke: var(--belief); stroke-width: 1; stroke-opacity: .9; }
 svg.map .particle { fill: var(--belief); fill-opacity: .55; stroke: var(--belief); stroke-width: .8; }
 svg.map .move { stroke: var(--truth); stroke-width: 3; }

@@ -31,6 +31,8 @@ table.results thead th.attack { border-bottom: 2px solid var(--axis); }
 table.results td { text-align: center; min-width: 6.2em; padding: 6px 10px; line-height: 1.25; }
 table.results td b { display: block; white-space: nowrap; font-weight: 650; }
 table.results td span { display: block; font-size: .8rem; color: var(--soft); }
+table.results td span.figure { white-space: nowrap; }
+table.facts th.text { text-align: left; }
 table.results td span.miss { color: var(--bad); font-weight: 650; }
 table.results td.open { border: 1px dashed var(--grid); color: var(--soft); }
 .maps { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 22px 24px; margin: 18px 0; }
@@ -135,13 +137,14 @@ std::string data_cell(const ResultCell* c, double largest) {
   std::string html =
       open ? "<td class=\"open\"" : fmt::format("<td style=\"{}\"", shade(estimate(c->runs).mean, largest));
   html += fmt::format(" title=\"{}\"><b>{}</b>", escape(hover_of_cell(*c)), escape(cell_text(*c)));
-  if (c->paper) html += fmt::format("<span>paper {}</span>", escape(paper_text(*c->paper)));
+  if (c->paper) html += fmt::format("<span class=\"figure\">paper {}</span>", escape(paper_text(*c->paper)));
   if (c->target) {
     const TargetVerdict v = verdict(*c);
     const std::string word = verdict_word(v);
     const bool miss = v == TargetVerdict::missed || v == TargetVerdict::missed_nearly;
-    html += fmt::format("<span{}>{}{} {}</span>", miss ? " class=\"miss\"" : "", word.empty() ? "target" : word + ":",
-                        c->target->sense == Target::Sense::at_least ? " ≥" : " ≤", return_text(c->target->value));
+    html += fmt::format("<span class=\"figure{}\">{}{} {}</span>", miss ? " miss" : "",
+                        word.empty() ? "target" : word + ":", c->target->sense == Target::Sense::at_least ? " ≥" : " ≤",
+                        return_text(c->target->value));
   }
   if (!c->note.empty()) html += fmt::format("<span>{}</span>", escape(c->note));
   return html + "</td>";
@@ -195,7 +198,8 @@ std::string worst_part(const ResultTable& table) {
   std::string html =
       "<h2>The worst attack on each agent</h2>\n<p>What a defence is worth is what is left under the attack that hurts "
       "it most. An agent that fewer attacks were tried on looks better than it is.</p>\n"
-      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>agent</th><th>return</th><th>under</th><th>of</th>"
+      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>agent</th><th>return</th><th "
+      "class=\"text\">under</th><th>of</th>"
       "</tr></thead><tbody>\n";
   for (const std::string& agent : agents) {
     const auto& [block, cell] = worst[agent];

@@ -82,6 +82,15 @@ std::string seeds_table(const ResultBlock& b) {
          rows;
 }
 
+/// As many decimals as the half-width has to say: "163 ± 12", "4.2 ± 1.3".
+std::string mean_and_half_width(double mean, double half_width) {
+  const int decimals = half_width >= 9.95 ? 0 : half_width >= 0.995 || half_width == 0 ? 1 : 2;
+  if (std::max(std::abs(mean), half_width) >= 1e6) return fmt::format("{:.4g} ± {:.2g}", mean, half_width);
+  std::string text = fmt::format("{:.{}f}", mean, decimals);
+  if (text.front() == '-') text.replace(0, 1, text.find_first_not_of("-0.") == text.npos ? "" : "−");
+  return fmt::format("{} ± {:.{}f}", text, half_width, decimals);
+}
+
 /// A fence longer than any row of backticks in the text.
 std::string fenced(const std::string& text) {
   std::size_t longest = 2, row = 0;
@@ -120,7 +129,7 @@ std::string verdict_word(TargetVerdict v) {
     case TargetVerdict::met_on_average:
       return "met on average";
     case TargetVerdict::missed_nearly:
-      return "MISS, not beyond doubt";
+      return "MISS, within ±";
     case TargetVerdict::missed:
       return "MISS";
     case TargetVerdict::none:
@@ -133,10 +142,10 @@ std::string cell_text(const ResultCell& cell) {
   if (cell.runs.empty()) return "not run";
   const Estimate e = estimate(cell.runs);
   const std::string mean = return_text(e.mean);
-  if (e.across_seeds) return fmt::format("{} ± {}", mean, return_text(e.across_seeds->half_width));
+  if (e.across_seeds) return mean_and_half_width(e.mean, e.across_seeds->half_width);
   const std::string why = cell.runs.size() == 1 ? "one seed" : "one episode";
   if (!e.these_agents) return fmt::format("{} ({})", mean, why);
-  return fmt::format("{} ± {} ({})", mean, return_text(e.these_agents->half_width), why);
+  return fmt::format("{} ({})", mean_and_half_width(e.mean, e.these_agents->half_width), why);
 }
 
 std::string intervals_in_words(const ResultTable& table) {

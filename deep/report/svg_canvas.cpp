@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -34,6 +36,54 @@ std::string svg_bomb(double x, double y) {
 std::string svg_cell(const MapFrame& f, int i, int j, std::string_view css_class) {
   return fmt::format("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"40\" height=\"40\"/>\n", css_class,
                      svg_number(f.x(i)), svg_number(f.y(j + 1)));
+}
+
+/// An edge of a box on a line, and on which side of the line the box lies.
+struct Edge {
+  double from, to;
+  int inward;
+};
+using EdgesByLine = std::map<double, std::vector<Edge>>;
+
+/// The parts of a line's edges that have the area on one side alone, joined where they touch.
+std::vector<std::pair<double, double>> open_parts(const std::vector<Edge>& edges) {
+  std::map<double, int> change;  // of the balance of sides, at a place on the line
+  for (const Edge& e : edges) {
+    change[e.from] += e.inward;
+    change[e.to] -= e.inward;
+  }
+  std::vector<std::pair<double, double>> parts;
+  int balance = 0;
+  double from = 0;
+  for (const auto& [at, by] : change) {
+    if (balance != 0 && !parts.empty() && parts.back().second == from) {
+      parts.back().second = at;
+    } else if (balance != 0) {
+      parts.emplace_back(from, at);
+    }
+    balance += by;
+    from = at;
+  }
+  return parts;
+}
+
+/// The outline of disjoint boxes: edges that two of them share are inside.
+std::string outline(const MapFrame& f, const std::vector<Box>& boxes) {
+  EdgesByLine upright, level;
+  for (const Box& b : boxes) {
+    upright[b.x_low].push_back({b.y_low, b.y_high, 1});
+    upright[b.x_high].push_back({b.y_low, b.y_high, -1});
+    level[b.y_low].push_back({b.x_low, b.x_high, 1});
+    level[b.y_high].push_back({b.x_low, b.x_high, -1});
+  }
+  std::string d;
+  for (const auto& [x, edges] : upright) {
+    for (const auto& [a, b] : open_parts(edges)) d += fmt::format("M{}V{}", f.place({x, a}), svg_number(f.y(b)));
+  }
+  for (const auto& [y, edges] : level) {
+    for (const auto& [a, b] : open_parts(edges)) d += fmt::format("M{}H{}", f.place({a, y}), svg_number(f.x(b)));
+  }
+  return d;
 }
 
 }  // namespace
@@ -91,6 +141,17 @@ std::string svg_box(const MapFrame& f, const Box& box, std::string_view css_clas
                      svg_number(f.x(b.x_low)), svg_number(f.y(b.y_high)),
                      svg_number(std::max(0.6, f.unit * (b.x_high - b.x_low))),
                      svg_number(std::max(0.6, f.unit * (b.y_high - b.y_low))));
+}
+
+std::string svg_area(const MapFrame& f, const std::vector<Box>& boxes) {
+  const std::vector<Box> disjoint = BoxUnion(boxes).meet({0, side, 0, side}).boxes();
+  if (disjoint.empty()) return "";
+  std::string d;
+  for (const Box& b : disjoint) {
+    d += fmt::format("M{}H{}V{}H{}z", f.place({b.x_low, b.y_low}), svg_number(f.x(b.x_high)), svg_number(f.y(b.y_high)),
+                     svg_number(f.x(b.x_low)));
+  }
+  return fmt::format("<path class=\"area\" d=\"{}\"/><path class=\"area-edge\" d=\"{}\"/>\n", d, outline(f, disjoint));
 }
 
 std::string svg_move(const MapFrame& f, Point from, Action action, bool cancelled) {

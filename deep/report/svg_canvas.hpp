@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <maximin/gridworld/box_union.hpp>
 #include <maximin/gridworld/gridworld.hpp>
@@ -38,6 +39,9 @@ std::string svg_map(const MapFrame& frame);
 
 /// The part of a box that is in the world, as a rectangle of this class; empty where there is none.
 std::string svg_box(const MapFrame& frame, const Box& box, std::string_view css_class);
+
+/// The part of a union of boxes that is in the world, as one area with its outline; empty where there is none.
+std::string svg_area(const MapFrame& frame, const std::vector<Box>& boxes);
 
 /// An arrow from a place along a move, 0.9 long; a cross where the move was cancelled.
 std::string svg_move(const MapFrame& frame, Point from, Action action, bool cancelled);

@@ -100,8 +100,16 @@ std::string picture(const std::vector<TrainingCurve>& curves, const std::vector<
   frame.width = 560;
   frame.title = figure.title;
   frame.description = fmt::format("{} over the frames of training", figure.title);
-  frame.x_label = "frames";
-  report::Plot plot(frame, report::Axis::linear(frames.low, frames.high, 4), axis_of(all, figure.logarithmic));
+  // Millions, where there are any: the labels of the axis stay short.
+  const double unit = frames.high >= 1e6 ? 1e6 : frames.high >= 1e4 ? 1e3 : 1;
+  frame.x_label = unit == 1e6 ? "millions of frames" : unit == 1e3 ? "thousands of frames" : "frames";
+  for (AgentLines& a : all) {
+    for (auto* line : {&a.mean, &a.low, &a.high}) {
+      for (report::Mark& m : *line) m.x /= unit;
+    }
+  }
+  const auto x = report::Axis::linear(frames.low / unit, frames.high / unit, 5);
+  report::Plot plot(frame, x, axis_of(all, figure.logarithmic));
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].several) plot.band(all[i].low, all[i].high, i);
   }

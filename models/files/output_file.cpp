@@ -90,4 +90,12 @@ void write_file(const fs::path& path, std::string_view content, Overwrite overwr
   if (rename(temporary.name(), target.c_str()) != 0) fail(path, "a file name that can be written");
 }
 
+void make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (fs::is_directory(path)) return;
+  throw InputError(fmt::format("{}: {}, expected a folder or room for one", path.string(),
+                               error ? error.message() : "is no folder"));
+}
+
 }  // namespace maximin

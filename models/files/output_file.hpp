@@ -15,4 +15,7 @@ inline constexpr const char* partial_suffix = ".partial";
 /// when it cannot be written, or exists and may not be replaced.
 void write_file(const std::filesystem::path& path, std::string_view content, Overwrite overwrite);
 
+/// Makes the folder, and those that it is in, unless it is there. Throws InputError when the system refuses.
+void make_folder(const std::filesystem::path& path);
+
 }  // namespace maximin

@@ -28,6 +28,7 @@ QNetworkShape random_shape(Stream& rng) {
   for (int layers = rng.integer(0, 3); layers > 0; --layers) shape.hidden.push_back(rng.integer(1, 24));
   shape.input_centre = rng.uniform(-1, 6);
   shape.input_scale = rng.uniform(-0.5, 0.5);
+  shape.waves = rng.integer(0, 3);
   return shape;
 }
 
@@ -61,7 +62,7 @@ Tensor values_at(QNetwork& q, const Tensor& points) {
 // Interval arithmetic as it is easily got wrong.
 enum class Fault { forgets_negative_weights, swaps_sides, forgets_relu_of_low, none };
 OutputBounds faulty_intervals(const QNetwork& q, const StateBox& box, Fault fault) {
-  Tensor low = q.centred(box.low), high = q.centred(box.high);
+  Tensor low = q.features(box.low), high = q.features(box.high);
   for (std::size_t i = 0; i < q.layers().size(); ++i) {
     const auto& layer = q.layers()[i];
     if (i > 0) {

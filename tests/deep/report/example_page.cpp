@@ -29,9 +29,9 @@ int main(int argc, char** argv) {
   }
   std::vector<EpisodeTrace> traces;
   for (const auto kind : {sample::Kind::box_belief, sample::Kind::particles, sample::Kind::no_belief}) {
-    traces.push_back(sample::episode(kind, 0.5, 0, 17));
-    traces.push_back(sample::episode(kind, 0.5, 2, 17));
-    traces.push_back(sample::episode(kind, 1.0, 24, 17));
+    traces.push_back(sample::episode(kind, 0.5, 0, 19));
+    traces.push_back(sample::episode(kind, 0.5, 2, 19));
+    traces.push_back(sample::episode(kind, 1.0, 24, 19));
   }
   write_results(folder / "table.json", table);
   write_file(folder / "table.md", markdown(table), Overwrite::replace);

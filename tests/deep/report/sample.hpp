@@ -72,7 +72,7 @@ inline EpisodeTrace episode(Kind kind, double eps, int tries, std::uint64_t numb
   trace.agent = kind == Kind::no_belief   ? "DQN"
                 : kind == Kind::particles ? "BP-DQN, particles"
                                           : "BP-DQN, exact belief";
-  trace.attack = tries == 0 ? "no attack" : tries < 4 ? "PGD" : "MinBest";
+  trace.attack = tries == 0 ? "no attack" : tries < 4 ? "weak attack" : "strong attack";
   trace.eps = tries == 0 ? 0 : eps;
   trace.evaluation_seed = 5;
   trace.episode = static_cast<long>(number);

@@ -1,0 +1,279 @@
+"""What maximin_deep does when it is killed, interrupted, or given bad usage and bad files. Trainings of a second."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import tempfile
+import time
+import xml.etree.ElementTree
+
+from cli import Refusal, main, no_constants, run
+
+COMMANDS = ["train", "evaluate", "table", "watch"]
+
+ENVIRONMENT = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+
+TINY = json.dumps({"network": {"hidden": [8]}, "training": {"frames": 3000, "lanes": 8, "stretch_frames": 80, "warm_up": 100}})
+
+
+def refused(arguments, says, **files):
+    return Refusal(arguments, 2, says, {name.replace("_", ".", 1): text for name, text in files.items()})
+
+
+REFUSALS = [
+    refused([], "no command given, expected one of train, evaluate, table, watch"),
+    refused(["trian"], "did you mean train?"),
+    refused(["train"], "AGENT"),
+    refused(["train", "dqm"], "dqm"),
+    refused(["train", "dqn", "--frames", "0"], "--frames: 0"),
+    refused(["train", "dqn", "--device", "gpu"], "--device: gpu, expected cpu, cuda or cuda:N"),
+    refused(["train", "dqn", "--config", "c.json"], "c.json: not JSON", c_json="{"),
+    refused(["train", "dqn", "--config", "c.json"], "too deep", c_json="[" * 100000),
+    refused(["train", "dqn", "--config", "c.json"], 'c.json: "framse": no such field', c_json='{"framse": 3}'),
+    refused(["train", "dqn", "--config", "c.json"], "c.json: kind", c_json='{"kind": "../dqn"}'),
+    refused(["train", "dqn", "--config", "c.json", "--folder", "f"], "start_from: dqn", c_json='{"start_from": "dqn"}'),
+    refused(["train", "dqn", "--frames", "100", "--folder", "c.json"], "c.json", c_json="{}"),
+    refused(["evaluate", "none.agent"], "none.agent: cannot be read"),
+    refused(["evaluate", "a.agent"], "a.agent: no file of this program", a_agent="PK"),
+    refused(["evaluate", "a.agent"], "a.agent: cut off or damaged", a_agent="maximin-tensors 1\n{}\n1234"),
+    refused(["evaluate", "a.agent", "--attack", "pdg"], "--attack: pdg"),
+    refused(["evaluate", "a.agent", "--eps", "-1"], "--eps: -1"),
+    refused(["evaluate", "a.agent", "--belief", "all"], "--belief: all"),
+    refused(["watch", "none.agent"], "none.agent: cannot be read"),
+    refused(["table", "atari"], "atari"),
+    refused(["table", "gridworld", "--only", "dqm"], "dqm"),
+    refused(["table", "aggregators", "--only", "dqn"], "--only, --attacks: no such cell"),
+    refused(["table", "gridworld", "--output", "c.json", "--folder", "."], "c.json", c_json="{}"),
+]
+
+
+def bytes_of(path):
+    with open(path, "rb") as f:
+        return f.read()
+
+
+def deep(program, arguments, **options):
+    return run(program, arguments, env=ENVIRONMENT, **options)
+
+
+def wait_for(path, process, seconds=60):
+    """Whether the file appeared while the process ran."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and process.poll() is None:
+        if os.path.exists(path):
+            return True
+        time.sleep(0.005)
+    return os.path.exists(path)
+
+
+def tiny(folder, name="tiny.json"):
+    path = os.path.join(folder, name)
+    with open(path, "w") as f:
+        f.write(TINY)
+    return path
+
+
+def check_help(program):
+    """Every help text has an example that names the program."""
+    problems = []
+    for command in [[]] + [[c] for c in COMMANDS]:
+        result = deep(program, command + ["--help"])
+        text = result.stdout.decode()
+        if result.returncode != 0 or result.stderr or "Example" not in text or "  maximin_deep " not in text:
+            problems.append("%s: exit code %d, %r" % (command, result.returncode, text[-200:]))
+    return problems
+
+
+def killed_at_random(program, folder, arguments, checkpoint, rng):
+    """Starts the training again and again, killed three times some time after its checkpoint was written anew; then lets
+    it end."""
+    kills = 0
+    while kills < 3:
+        if os.path.exists(checkpoint):
+            os.utime(checkpoint, (0, 0))
+        process = subprocess.Popen([program] + arguments, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while process.poll() is None and not (os.path.exists(checkpoint) and os.stat(checkpoint).st_mtime > 1):
+            time.sleep(0.002)
+        time.sleep(rng.uniform(0, 0.05))
+        if process.poll() is not None:
+            return "ended with %s before it was killed %d times" % (process.returncode, kills + 1)
+        process.kill()
+        process.wait()
+        kills += 1
+    result = deep(program, arguments)
+    return "" if result.returncode == 0 else "exit code %d, %r" % (result.returncode, result.stderr)
+
+
+def check_killed_training(program):
+    """A training killed in the middle three times leaves the same files, byte for byte."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        def arguments(name, *more):
+            return ["train", "dqn", "--config", tiny(folder), "--folder", os.path.join(folder, name), "--json", *more]
+        whole = deep(program, arguments("whole"))
+        if whole.returncode != 0 or json.loads(whole.stdout)["agents"][0]["training_seconds"] <= 0:
+            problems.append("exit code %d, %r" % (whole.returncode, whole.stderr))
+        checkpoint = os.path.join(folder, "cut", "dqn-seed1.training")
+        problem = killed_at_random(program, folder, arguments("cut"), checkpoint, random.Random(4))
+        if problem:
+            problems.append(problem)
+        deep(program, arguments("other", "--seed", "2"))
+        for ending in (".agent", ".csv"):
+            one, other = (bytes_of(os.path.join(folder, f, "dqn-seed1" + ending)) for f in ("whole", "cut"))
+            if one != other:
+                problems.append("another dqn-seed1%s after being killed" % ending)
+            if one == bytes_of(os.path.join(folder, "other", "dqn-seed2" + ending)):
+                problems.append("the comparison does not tell seeds apart")
+        left = [f for f in os.listdir(os.path.join(folder, "cut")) if not f.endswith(".partial")]
+        if sorted(left) != ["dqn-seed1.agent", "dqn-seed1.csv", "dqn-seed1.times.json"]:
+            problems.append("left behind: %s" % left)
+    return problems
+
+
+def check_interrupted_training(program):
+    """SIGINT ends with 130 and a state that goes on; a checkpoint that was damaged is refused."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        runs = os.path.join(folder, "runs")
+        arguments = ["train", "dqn", "--config", tiny(folder), "--folder", runs]
+        checkpoint = os.path.join(runs, "dqn-seed1.training")
+        process = subprocess.Popen([program] + arguments, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        if not wait_for(checkpoint, process):
+            problems.append("no checkpoint")
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        if process.returncode != 130 or b"the same command goes on" not in err or not os.path.exists(checkpoint):
+            problems.append("exit code %d, %r" % (process.returncode, err))
+        good = bytes_of(checkpoint)
+        for bad in (good[:-9], good[:40], b"", good[:-1] + bytes([good[-1] ^ 1]), good[:99] + b"?" + good[100:]):
+            with open(checkpoint, "wb") as f:
+                f.write(bad)
+            result = deep(program, arguments)
+            if result.returncode != 2 or result.stderr.count(b"\n") != 1 or b"dqn-seed1.training: " not in result.stderr:
+                problems.append("damaged checkpoint: exit code %d, %r" % (result.returncode, result.stderr))
+        with open(checkpoint, "wb") as f:
+            f.write(good)
+        if deep(program, arguments).returncode != 0:
+            problems.append("the good checkpoint is refused")
+        other = deep(program, arguments[:2] + ["--folder", runs])
+        if other.returncode != 2 or b"another specification" not in other.stderr:
+            problems.append("an agent of another specification: exit code %d, %r" % (other.returncode, other.stderr))
+    return problems
+
+
+def check_agents(program):
+    """What is done with a trained agent: numbers that come again, a picture, and nothing overwritten."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        def here(*arguments):
+            return deep(program, list(arguments), cwd=folder)
+        # Two that begin with the same vanilla agent, side by side.
+        with open(os.path.join(folder, "c.json"), "w") as f:
+            f.write('{"network": {"hidden": [8]}, "random_actions": 0.3}')
+        trained = here("train", "bp-dqn", "wocar-dqn", "--frames", "600", "--jobs", "2", "--eps", "0.3", "--folder", ".",
+                       "--config", "c.json")
+        expected = ["bp-dqn-eps0.3-seed1.agent", "dqn-seed1.agent", "wocar-dqn-eps0.3-seed1.agent"]
+        if trained.returncode != 0 or sorted(f for f in os.listdir(folder) if f.endswith(".agent")) != expected:
+            return ["training: exit code %d, %r, %s" % (trained.returncode, trained.stderr, os.listdir(folder))]
+        evaluate = ["evaluate", *expected[::2], "--attack", "random", "best-response", "--episodes", "4", "--json"]
+        first, second = here(*evaluate), here(*evaluate)
+        other = here(*evaluate, "--seed", "7")
+        if first.returncode != 0:
+            return ["evaluate: exit code %d, %r" % (first.returncode, first.stderr)]
+
+        def returns(result):
+            return [r["returns"] for r in json.loads(result.stdout, parse_constant=no_constants)["results"]]
+        if len(returns(first)) != 4 or any(len(r) != 4 for r in returns(first)):
+            problems.append("evaluate: %s" % returns(first))
+        if returns(first) != returns(second) or returns(first) == returns(other):
+            problems.append("evaluate: the same seed gives other numbers, or another the same")
+        if b"of these very networks" not in here(*evaluate[:-1]).stdout:
+            problems.append("evaluate: no table")
+
+        watch = ["watch", expected[0], "--attack", "random", "-o", "e.svg", "--trace", "t.json"]
+        shown = here(*watch)
+        if shown.returncode != 0 or b"episode 0: " not in shown.stdout:
+            return problems + ["watch: exit code %d, %r" % (shown.returncode, shown.stderr)]
+        if not xml.etree.ElementTree.parse(os.path.join(folder, "e.svg")).getroot().tag.endswith("svg"):
+            problems.append("watch: no SVG")
+        json.loads(bytes_of(os.path.join(folder, "t.json")), parse_constant=no_constants)
+        before = bytes_of(os.path.join(folder, "e.svg"))
+        for again, replaced in ((watch[:-2], "e.svg"), (watch[:5] + ["new.svg"] + watch[6:], "t.json")):
+            result = here(*again, "--episode", "1")
+            if result.returncode != 2 or ("%s: exists" % replaced).encode() not in result.stderr:
+                problems.append("watch overwrites %s: exit code %d, %r" % (replaced, result.returncode, result.stderr))
+        if bytes_of(os.path.join(folder, "e.svg")) != before or os.path.exists(os.path.join(folder, "new.svg")):
+            problems.append("watch wrote what it refused to write")
+        if here(*watch, "--episode", "1", "--force").returncode != 0 or bytes_of(os.path.join(folder, "e.svg")) == before:
+            problems.append("watch --force leaves the old picture")
+
+        good = bytes_of(os.path.join(folder, expected[1]))
+        for bad in (good[:-1], good[:-5] + bytes([good[-5] ^ 4]) + good[-4:]):
+            with open(os.path.join(folder, "bad.agent"), "wb") as f:
+                f.write(bad)
+            result = here("evaluate", "bad.agent")
+            if result.returncode != 2 or result.stderr.count(b"\n") != 1 or b"bad.agent: cut off or damaged" not in result.stderr:
+                problems.append("damaged agent: exit code %d, %r" % (result.returncode, result.stderr))
+    return problems
+
+
+def without_seconds(value):
+    """The JSON without what depends on the clock and on where it was made."""
+    if isinstance(value, dict):
+        return {k: without_seconds(v) for k, v in value.items() if "seconds" not in k}
+    return [without_seconds(v) for v in value] if isinstance(value, list) else value
+
+
+def check_killed_table(program):
+    """A table killed at random, and interrupted, ends as the same table."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        def command(name):
+            where = os.path.join(folder, name)
+            return [program, "table", "gridworld", "--only", "dqn", "--attacks", "none", "random", "pgd", "--frames", "600",
+                    "--seeds", "1", "--episodes", "2", "--folder", where, "--output", where]
+
+        def table(name):
+            with open(os.path.join(folder, name, "gridworld.json")) as f:
+                return without_seconds(json.load(f, parse_constant=no_constants))
+        def done():
+            exists = os.path.exists(os.path.join(folder, "cut", "gridworld.json"))
+            return sum(len(c["runs"]) for b in table("cut")["blocks"] for c in b["cells"]) if exists else 0
+        whole = deep(program, command("whole")[1:])
+        if whole.returncode != 0 or b"DQN" not in whole.stdout:
+            return ["exit code %d, %r" % (whole.returncode, whole.stderr)]
+        rng = random.Random(1)
+        json_file = os.path.join(folder, "cut", "gridworld.json")
+        for number, code in ((signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, 130), (signal.SIGKILL, -signal.SIGKILL)):
+            before = done()
+            process = subprocess.Popen(command("cut"), env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            while process.poll() is None and done() <= before:
+                time.sleep(0.005)
+            time.sleep(rng.uniform(0, 0.02))
+            process.send_signal(number)
+            _, err = process.communicate(timeout=60)
+            if process.returncode != code:
+                problems.append("signal %d: exit code %d, %r" % (number, process.returncode, err))
+        done_before_the_end = done()
+        if deep(program, command("cut")[1:]).returncode != 0 or table("cut") != table("whole"):
+            problems.append("another table after being killed")
+        cells = [c for b in table("whole")["blocks"] for c in b["cells"]]
+        if not 3 <= done_before_the_end < len(cells) or any(len(c["runs"]) != 1 for c in cells):
+            problems.append("%d runs of %d cells before the end" % (done_before_the_end, len(cells)))
+        if len({json.dumps(c["runs"][0]["returns"]) for c in cells}) < 3:
+            problems.append("all cells alike: the comparison would not tell tables apart")
+        with open(json_file, "w") as f:
+            f.write("{")
+        broken = deep(program, command("cut")[1:])
+        if broken.returncode != 2 or broken.stderr.count(b"\n") != 1:
+            problems.append("broken table: exit code %d, %r" % (broken.returncode, broken.stderr))
+    return problems
+
+
+CHECKS = [check_help, check_killed_training, check_interrupted_training, check_agents, check_killed_table]
+
+
+if __name__ == "__main__":
+    main([], REFUSALS, CHECKS, None)
