@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -160,7 +161,7 @@ class TrainAgent : public ::testing::Test {
     }
   }
 
-  fs::path folder_ = fs::path(::testing::TempDir()) / "maximin_train_agent_test";
+  fs::path folder_ = fs::path(::testing::TempDir()) / ("maximin_train_agent_test" + std::to_string(::getpid()));
 };
 
 TEST_F(TrainAgent, StoppedAndResumedLeavesTheSameFiles) {

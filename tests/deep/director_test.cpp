@@ -1,6 +1,8 @@
+#include <unistd.h>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -183,7 +185,7 @@ TEST(Director, LearnsAProblemWhoseSolutionIsKnown) {
   };
   EXPECT_TRUE(equal(*one, *same));
   EXPECT_FALSE(equal(*one, *other));
-  const auto path = std::filesystem::path(testing::TempDir()) / "director_test.attacker";
+  const auto path = std::filesystem::path(testing::TempDir()) / ("director_test" + std::to_string(::getpid()));
   write_tensor_file(path, one->save());
   other->load(read_tensor_file(path, "attacker"));
   EXPECT_TRUE(equal(*one, *other));

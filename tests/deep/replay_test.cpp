@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
+#include <string>
 
 #include <cmath>
 #include <filesystem>
@@ -155,7 +157,8 @@ class ReplayFile : public ::testing::Test {
   }
   ~ReplayFile() override { std::filesystem::remove(path_); }
 
-  std::filesystem::path path_ = std::filesystem::path(::testing::TempDir()) / "maximin_replay_test";
+  std::filesystem::path path_ =
+      std::filesystem::path(::testing::TempDir()) / ("maximin_replay_test" + std::to_string(::getpid()));
 };
 
 /// Whether the two memories go on alike.

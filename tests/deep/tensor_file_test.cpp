@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <sys/resource.h>
 #include <zlib.h>
@@ -59,7 +60,7 @@ class TensorFiles : public ::testing::Test {
     return refusal([&] { read_tensor_file(path_, "agent"); });
   }
 
-  fs::path folder_ = fs::path(::testing::TempDir()) / "maximin_tensor_file_test";
+  fs::path folder_ = fs::path(::testing::TempDir()) / ("maximin_tensor_file_test" + std::to_string(::getpid()));
   fs::path path_ = folder_ / "file";
 };
 

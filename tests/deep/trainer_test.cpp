@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -60,7 +61,7 @@ struct Training {
 
 /// Everything in memory that the rest of a training depends on, through a file.
 TensorFile checkpoint(const Trainer& trainer) {
-  const auto path = std::filesystem::path(::testing::TempDir()) / "maximin_trainer_test";
+  const auto path = std::filesystem::path(::testing::TempDir()) / ("maximin_trainer_test" + std::to_string(::getpid()));
   TensorFile file{"training", {}, {}};
   trainer.save(file);
   write_tensor_file(path, file);

@@ -39,5 +39,6 @@ int main(int argc, char** argv) {
   write_trace(folder / "episode.json", traces[2]);
   write_file(folder / "episode.svg", animated_svg(traces[2]), Overwrite::replace);
   write_file(folder / "particles.svg", animated_svg(traces[5]), Overwrite::replace);
-  write_file(folder / "path.svg", standalone_svg(path_picture(traces[2], {moments(traces[2], 4), true, ""})), Overwrite::replace);
+  write_file(folder / "path.svg", standalone_svg(path_picture(traces[2], {moments(traces[2], 4), true, ""})),
+             Overwrite::replace);
 }
