@@ -17,7 +17,9 @@ target_compile_features(maximin_options INTERFACE cxx_std_20)
 target_compile_options(maximin_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor
   $<$<BOOL:${MAXIMIN_WARNINGS_AS_ERRORS}>:-Werror>
   # g++ 12 sees overlapping copies in std::string::operator+ where there are none (its bug 105651).
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+  # In a unit of several sources g++ takes each of them for a header, and its unnamed namespace for an accident.
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>)
 if(MAXIMIN_SANITIZE)
   target_compile_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(maximin_options INTERFACE -fsanitize=${MAXIMIN_SANITIZE})

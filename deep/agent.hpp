@@ -57,4 +57,18 @@ class GridAttack {
                        std::span<Stream> streams, std::span<Point> shown) = 0;
 };
 
+/// An attack made of another one, which must outlive it: forgets when that forgets.
+class WrappedAttack : public GridAttack {
+ public:
+  explicit WrappedAttack(GridAttack& attack) : attack_(&attack) {}
+  void resize(Lane lanes) override { attack_->resize(lanes); }
+  void forget(Lane lane) override { attack_->forget(lane); }
+
+ protected:
+  GridAttack& attack() const { return *attack_; }
+
+ private:
+  GridAttack* attack_;
+};
+
 }  // namespace maximin::deep

@@ -139,9 +139,8 @@ class Reader {
   void refuse_unknown() const {
     for (const auto& item : json_.items()) {
       if (std::find(names_.begin(), names_.end(), item.key()) != names_.end()) continue;
-      const std::string nearest = nearest_name(item.key(), names_);
       throw InputError(fmt::format("{}: {}: no such field, expected {}", where_, excerpt_of(item.key()),
-                                   nearest.empty() ? fmt::format("{}", fmt::join(names_, ", ")) : nearest));
+                                   nearest_or_all(item.key(), names_)));
     }
   }
 

@@ -34,6 +34,8 @@ struct AgentSpec {
 
   /// The agent's name in files: "bp-dqn-eps0.5-seed1"; without eps where none was trained for.
   std::string name() const;
+  /// Whether its belief is a particle filter, which is trained before it.
+  bool has_particle_filter() const { return belief.starts_with("pf-"); }
   /// Whether eps has a part in it.
   bool knows_eps() const { return belief != "observed" || loss != "td" || train_attack != "none"; }
 };

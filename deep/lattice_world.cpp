@@ -89,7 +89,7 @@ State LatticeWorld::nearest_in_ball(State truth, Point wanted) const {
 
 void OnLattice::perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                         std::span<Stream> streams, std::span<Point> shown) {
-  attack_->perturb(lanes, truths, Rounding(agent, *world_, lanes, truths), streams, shown);
+  attack().perturb(lanes, truths, Rounding(agent, *world_, lanes, truths), streams, shown);
   for (std::size_t k = 0; k < lanes.size(); ++k) {
     shown[k] = world_->place(world_->nearest_in_ball(world_->state(truths[k]), shown[k]));
   }
@@ -97,7 +97,7 @@ void OnLattice::perturb(std::span<const Lane> lanes, std::span<const Point> trut
 
 void WithinLatticeBall::perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                                 std::span<Stream> streams, std::span<Point> shown) {
-  attack_->perturb(lanes, truths, agent, streams, shown);
+  attack().perturb(lanes, truths, agent, streams, shown);
   for (std::size_t k = 0; k < lanes.size(); ++k) {
     const auto ball = world_->balls().ball(world_->state(truths[k]));
     const bool inside = std::any_of(ball.begin(), ball.end(), [&](State t) { return world_->place(t) == shown[k]; });

@@ -75,31 +75,25 @@ class EveryStart {
 
 /// An attack of the continuous world on the lattice: what it wants to show is rounded to the nearest lattice point in
 /// the ball, and so is what it asks the agent about. The world and the attack must outlive it.
-class OnLattice final : public GridAttack {
+class OnLattice final : public WrappedAttack {
  public:
-  OnLattice(GridAttack& attack, const LatticeWorld& world) : attack_(&attack), world_(&world) {}
-  void resize(Lane lanes) override { attack_->resize(lanes); }
-  void forget(Lane lane) override { attack_->forget(lane); }
+  OnLattice(GridAttack& attack, const LatticeWorld& world) : WrappedAttack(attack), world_(&world) {}
   void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                std::span<Stream> streams, std::span<Point> shown) override;
 
  private:
-  GridAttack* attack_;
   const LatticeWorld* world_;
 };
 
 /// Any attack on the lattice, held to the rules: throws std::logic_error when it shows something else than a lattice
 /// point in the ball. The world and the attack must outlive it.
-class WithinLatticeBall final : public GridAttack {
+class WithinLatticeBall final : public WrappedAttack {
  public:
-  WithinLatticeBall(GridAttack& attack, const LatticeWorld& world) : attack_(&attack), world_(&world) {}
-  void resize(Lane lanes) override { attack_->resize(lanes); }
-  void forget(Lane lane) override { attack_->forget(lane); }
+  WithinLatticeBall(GridAttack& attack, const LatticeWorld& world) : WrappedAttack(attack), world_(&world) {}
   void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                std::span<Stream> streams, std::span<Point> shown) override;
 
  private:
-  GridAttack* attack_;
   const LatticeWorld* world_;
 };
 

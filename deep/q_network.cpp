@@ -56,6 +56,15 @@ void QNetwork::copy_from(const QNetwork& other) {
   }
 }
 
+QNetworkPtr frozen_copy(const QNetwork& q) {
+  Stream unused(0);
+  auto copy = std::make_shared<QNetwork>(q.shape(), unused);
+  copy->to(q.parameters().front().device());
+  copy->copy_from(q);
+  for (torch::Tensor& parameter : copy->parameters()) parameter.set_requires_grad(false);
+  return copy;
+}
+
 long QNetwork::parameter_count() const {
   long n = 0;
   for (const auto& p : parameters()) n += p.numel();

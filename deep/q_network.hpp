@@ -60,4 +60,7 @@ class QNetwork : public ActionValueModule {
 
 using QNetworkPtr = std::shared_ptr<QNetwork>;
 
+/// Another network of the same shape and weights, on the same device, which needs no gradients.
+QNetworkPtr frozen_copy(const QNetwork& q);
+
 }  // namespace maximin::deep

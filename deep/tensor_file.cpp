@@ -182,6 +182,16 @@ TensorFile read_tensor_file(const std::filesystem::path& path, const std::string
   return file;
 }
 
+torch::Tensor tensor_of_bytes(const std::string& bytes) {
+  torch::Tensor copy = torch::empty({static_cast<long>(bytes.size())}, torch::kByte);
+  std::memcpy(copy.data_ptr(), bytes.data(), bytes.size());
+  return copy;
+}
+
+std::string bytes_of_tensor(const torch::Tensor& tensor) {
+  return {static_cast<const char*>(tensor.data_ptr()), tensor.nbytes()};
+}
+
 void put_module(TensorFile& file, const std::string& prefix, const torch::nn::Module& module) {
   for (const auto& item : module.named_parameters()) file.tensors[prefix + '.' + item.key()] = item.value();
   for (const auto& item : module.named_buffers()) file.tensors[prefix + '.' + item.key()] = item.value();

@@ -31,6 +31,10 @@ void write_tensor_file(const std::filesystem::path& path, const TensorFile& cont
 /// Reads a file of this kind. Throws InputError, "PATH: what is wrong, expected ...".
 TensorFile read_tensor_file(const std::filesystem::path& path, const std::string& kind);
 
+/// What another library wrote, as a tensor of bytes; and back.
+torch::Tensor tensor_of_bytes(const std::string& bytes);
+std::string bytes_of_tensor(const torch::Tensor& tensor);
+
 /// All parameters and buffers of a module, as PREFIX.NAME; they share their numbers with the module.
 void put_module(TensorFile& file, const std::string& prefix, const torch::nn::Module& module);
 /// Takes them back. Throws InputError as TensorFile::copy_to, and where a number is not finite.

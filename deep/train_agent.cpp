@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -37,8 +38,8 @@ std::optional<TrainedAgent> finished(const AgentSpec& spec, const fs::path& path
                   path.string()));
 }
 
-/// A particle filter for the belief, trained from scratch: it takes minutes, and the same seed gives the same filter,
-/// so that no checkpoint is kept. Nothing where the hook stopped it.
+/// A particle filter for the belief, trained in one go: it takes minutes, and the same seed gives the same filter. What
+/// follows keeps it in its checkpoints. False where the hook stopped it.
 bool train_particle_filter(TrainedAgent& agent, bool quick, const TrainingHooks& hooks) {
   PfRnnOptions shape;
   shape.cell = agent.spec.belief == "pf-gru" ? PfCell::gru : PfCell::lstm;
@@ -71,18 +72,10 @@ struct Files {
       : agent(folder / (name + ".agent")), log(folder / (name + ".csv")), checkpoint(folder / (name + ".training")) {}
 };
 
-/// Continues a training from its checkpoint. Returns the seconds that it took so far.
-double resume(const fs::path& path, const AgentSpec& spec, TrainedAgent& agent, Trainer& trainer) {
-  const TensorFile file = read_tensor_file(path, "training");
+/// Does something with a checkpoint; what is wrong with it is said with its name.
+void reading(const fs::path& path, const std::function<void()>& read) {
   try {
-    AgentSpec written;
-    merge_json(written, file.about.at("specification"), "specification");
-    if (!same_training(written, spec)) {
-      throw InputError("a training of another specification, expected the same; remove it or train in another folder");
-    }
-    trainer.load(file);
-    agent.belief_seconds = file.about.at("belief_seconds").get<double>();
-    return file.about.at("training_seconds").get<double>();
+    read();
   } catch (const InputError& e) {
     throw InputError(fmt::format("{}: {}", path.string(), e.what()));
   } catch (const nlohmann::json::exception&) {
@@ -90,16 +83,34 @@ double resume(const fs::path& path, const AgentSpec& spec, TrainedAgent& agent, 
   }
 }
 
+/// The checkpoint, if there is one, with what it holds besides the trainer's: seconds so far and the particle filter.
+std::optional<TensorFile> read_checkpoint(const fs::path& path, TrainedAgent& agent) {
+  if (!fs::exists(path)) return std::nullopt;
+  TensorFile file = read_tensor_file(path, "training");
+  reading(path, [&] {
+    AgentSpec written;
+    merge_json(written, file.about.at("specification"), "specification");
+    if (!same_training(written, agent.spec)) {
+      throw InputError("a training of another specification, expected the same; remove it or train in another folder");
+    }
+    get_particle_filter(file, agent);
+    agent.belief_seconds = file.about.at("belief_seconds").get<double>();
+    agent.training_seconds = file.about.at("training_seconds").get<double>();
+  });
+  return file;
+}
+
 void write_checkpoint(const fs::path& path, const TrainedAgent& agent, const Trainer& trainer, double seconds) {
   TensorFile file{"training", {}, {}};
   file.about["specification"] = to_json(agent.spec);
   file.about["belief_seconds"] = agent.belief_seconds;
   file.about["training_seconds"] = seconds;
+  put_particle_filter(file, agent);
   trainer.save(file);
   write_tensor_file(path, file);
 }
 
-/// Where the weights come from that a training begins with.
+/// What is trained before the agent: the weights that it begins with, and its particle filter unless it has one.
 bool prepare(TrainedAgent& agent, const fs::path& folder, torch::Device device, const Effort& effort,
              const TrainingHooks& hooks) {
   const AgentSpec& spec = agent.spec;
@@ -109,7 +120,8 @@ bool prepare(TrainedAgent& agent, const fs::path& folder, torch::Device device, 
     agent.q->copy_from(*start->q);
     if (auto* wocar = dynamic_cast<WocarLoss*>(agent.loss.get())) wocar->start_from(*start->q);
   }
-  return !spec.belief.starts_with("pf-") || train_particle_filter(agent, effort.quick, hooks);
+  const bool lacks_filter = spec.has_particle_filter() && !agent.particle_filter;
+  return !lacks_filter || train_particle_filter(agent, effort.quick, hooks);
 }
 
 }  // namespace
@@ -140,6 +152,7 @@ std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& f
   }
   make_folder(folder);
   TrainedAgent agent = untrained(spec);
+  const auto checkpoint = read_checkpoint(files.checkpoint, agent);
   if (!prepare(agent, folder, device, effort, hooks)) return std::nullopt;
 
   TrainingParts parts;
@@ -152,8 +165,8 @@ std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& f
   parts.loss = agent.loss;
   parts.device = device;
   Trainer trainer(spec.training, parts);
-  double before = 0;
-  if (fs::exists(files.checkpoint)) before = resume(files.checkpoint, spec, agent, trainer);
+  if (checkpoint) reading(files.checkpoint, [&] { trainer.load(*checkpoint); });
+  const double before = agent.training_seconds;
   const Stopwatch watch;
   TrainingLogWriter log(files.log, training_columns(), static_cast<double>(trainer.frames()));
   if (hooks.begin) hooks.begin(spec.name(), spec.training.frames);

@@ -1,6 +1,5 @@
 #include <maximin/deep/trained_agent.hpp>
 
-#include <cstring>
 #include <sstream>
 #include <utility>
 
@@ -65,16 +64,6 @@ std::shared_ptr<Loss> make_loss(const AgentSpec& spec) {
   return std::make_shared<TdLoss>(o);
 }
 
-torch::Tensor bytes_tensor(const std::string& bytes) {
-  torch::Tensor copy = torch::empty({static_cast<long>(bytes.size())}, torch::kByte);
-  std::memcpy(copy.data_ptr(), bytes.data(), bytes.size());
-  return copy;
-}
-
-std::string tensor_bytes(const torch::Tensor& t) {
-  return {static_cast<const char*>(t.data_ptr()), t.nbytes()};
-}
-
 std::filesystem::path times_file(std::filesystem::path agent) {
   if (agent.extension() == ".agent") agent.replace_extension();
   return agent += ".times.json";
@@ -84,6 +73,17 @@ std::filesystem::path times_file(std::filesystem::path agent) {
 
 Acting acting_of(const AgentSpec& spec) {
   return {spec.belief, spec.belief_states, spec.aggregator, spec.random_actions};
+}
+
+Acting acting_of(const AgentSpec& spec, const ActingChange& change) {
+  Acting acting = acting_of(spec);
+  if (!change.belief.empty() && change.belief != spec.belief) {
+    acting.belief = change.belief;
+    acting.belief_states = Acting{}.belief_states;
+  }
+  if (!change.aggregator.empty()) acting.aggregator = change.aggregator;
+  if (change.random_actions >= 0) acting.random_actions = change.random_actions;
+  return acting;
 }
 
 std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const PfRnnPtr& particle_filter) {
@@ -106,17 +106,26 @@ TrainedAgent untrained(const AgentSpec& spec) {
   return {spec, std::make_shared<QNetwork>(spec.network, rng), make_loss(spec), nullptr};
 }
 
+void put_particle_filter(TensorFile& file, const TrainedAgent& agent) {
+  if (!agent.particle_filter) return;
+  std::ostringstream bytes;
+  save_pf_rnn(bytes, *agent.particle_filter);
+  file.tensors["particle_filter"] = tensor_of_bytes(bytes.str());
+}
+
+void get_particle_filter(const TensorFile& file, TrainedAgent& agent) {
+  if (!agent.spec.has_particle_filter()) return;
+  std::istringstream bytes(bytes_of_tensor(file.at("particle_filter")));
+  agent.particle_filter = load_pf_rnn(bytes, "particle_filter");
+}
+
 void write_agent(const std::filesystem::path& path, const TrainedAgent& agent) {
   TensorFile file{"agent", {}, {}};
   file.about["specification"] = to_json(agent.spec);
   put_module(file, "q", *agent.q);
   const auto modules = agent.loss->modules();
   for (std::size_t i = 0; i < modules.size(); ++i) put_module(file, fmt::format("loss{}", i), *modules[i]);
-  if (agent.particle_filter) {
-    std::ostringstream bytes;
-    save_pf_rnn(bytes, *agent.particle_filter);
-    file.tensors["particle_filter"] = bytes_tensor(bytes.str());
-  }
+  put_particle_filter(file, agent);
   const nlohmann::ordered_json times{{"training_seconds", agent.training_seconds},
                                      {"belief_seconds", agent.belief_seconds}};
   write_file(times_file(path), readable_json(times), Overwrite::replace);
@@ -135,10 +144,7 @@ TrainedAgent read_agent(const std::filesystem::path& path) {
     get_module(file, "q", *agent.q);
     const auto modules = agent.loss->modules();
     for (std::size_t i = 0; i < modules.size(); ++i) get_module(file, fmt::format("loss{}", i), *modules[i]);
-    if (spec.belief.starts_with("pf-")) {
-      std::istringstream bytes(tensor_bytes(file.at("particle_filter")));
-      agent.particle_filter = load_pf_rnn(bytes, "particle_filter");
-    }
+    get_particle_filter(file, agent);
   } catch (const InputError& e) {
     throw InputError(fmt::format("{}: {}", path.string(), e.what()));
   }

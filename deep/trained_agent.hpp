@@ -27,7 +27,7 @@ struct TrainedAgent {
   std::shared_ptr<ActionValueModule> values() const { return loss->acting(q); }
 };
 
-/// How to act, where that differs from the specification: ablations take parts of an agent.
+/// How to act.
 struct Acting {
   std::string belief;
   long belief_states = 32;
@@ -35,6 +35,14 @@ struct Acting {
   double random_actions = 0;
 };
 Acting acting_of(const AgentSpec& spec);
+
+/// What to do otherwise than the specification says: ablations take parts of an agent.
+struct ActingChange {
+  /// Empty: its own. For another belief than its own as many states stand as are Acting's default.
+  std::string belief, aggregator;
+  double random_actions = -1;  ///< negative: its own
+};
+Acting acting_of(const AgentSpec& spec, const ActingChange& change);
 
 /// The belief model of that name, of radius eps. Throws InputError where it is a particle filter and there is none.
 std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const PfRnnPtr& particle_filter);
@@ -49,6 +57,11 @@ TrainedAgent untrained(const AgentSpec& spec);
 /// NAME.times.json. Throws InputError as tensor files do.
 void write_agent(const std::filesystem::path& path, const TrainedAgent& agent);
 TrainedAgent read_agent(const std::filesystem::path& path);
+
+/// The particle filter as tensor "particle_filter", where the agent has one; and back, where its specification asks for
+/// one. Throws InputError as tensor files do.
+void put_particle_filter(TensorFile& file, const TrainedAgent& agent);
+void get_particle_filter(const TensorFile& file, TrainedAgent& agent);
 
 /// What is told while an agent is trained. `stretch` returns false to stop.
 struct TrainingHooks {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -50,12 +49,8 @@ void TrainOptions::check() const {
 Trainer::Trainer(const TrainOptions& options, TrainingParts parts)
     : options_(options), parts_(std::move(parts)), replay_(options.replay, parts_.belief->states_per_belief()) {
   options_.check();
-  Stream unused(0);
   parts_.online->to(parts_.device);
-  target_ = std::make_shared<QNetwork>(parts_.online->shape(), unused);
-  target_->to(parts_.device);
-  target_->copy_from(*parts_.online);
-  for (auto& p : target_->parameters()) p.set_requires_grad(false);
+  target_ = frozen_copy(*parts_.online);
   agent_ = std::make_unique<BeliefAgent>(parts_.loss->acting(parts_.online), parts_.belief, parts_.aggregator);
   std::vector<torch::Tensor> trained = parts_.online->parameters();
   for (const auto& module : parts_.loss->modules()) {
@@ -69,7 +64,6 @@ Trainer::Trainer(const TrainOptions& options, TrainingParts parts)
   const auto n = static_cast<std::size_t>(options_.lanes);
   for (Lane l = 0; l < options_.lanes; ++l) all_lanes_.push_back(l);
   truths_.resize(n);
-  shown_.resize(n);
   learner_states_.resize(n);
   actions_.resize(n);
   pending_.resize(n);
@@ -117,11 +111,7 @@ void Trainer::look(std::span<const Lane> lanes) {
   for (const Lane l : lanes) truths.push_back(truths_[static_cast<std::size_t>(l)]);
   parts_.attack->perturb(lanes, truths, *agent_, streams_, shown);
   agent_->act(lanes, shown, streams_, actions);
-  for (std::size_t k = 0; k < lanes.size(); ++k) {
-    const auto l = static_cast<std::size_t>(lanes[k]);
-    shown_[l] = shown[k];
-    actions_[l] = actions[k];
-  }
+  for (std::size_t k = 0; k < lanes.size(); ++k) actions_[static_cast<std::size_t>(lanes[k])] = actions[k];
 }
 
 /// Keeps the beliefs that the last look came to.
@@ -271,10 +261,7 @@ void Trainer::save(TensorFile& file) const {
   // LibTorch alone knows what its optimiser holds.
   std::ostringstream optimiser;
   torch::save(*optimiser_, optimiser);
-  const std::string bytes = optimiser.str();
-  torch::Tensor copy = torch::empty({static_cast<long>(bytes.size())}, torch::kByte);
-  std::memcpy(copy.data_ptr(), bytes.data(), bytes.size());
-  file.tensors["optimiser"] = copy;
+  file.tensors["optimiser"] = tensor_of_bytes(optimiser.str());
 }
 
 void Trainer::load(const TensorFile& file) {
@@ -287,8 +274,7 @@ void Trainer::load(const TensorFile& file) {
   const auto modules = parts_.loss->modules();
   for (std::size_t i = 0; i < modules.size(); ++i) get_module(file, "loss" + std::to_string(i), *modules[i]);
   replay_.load(file);
-  const torch::Tensor& bytes = file.at("optimiser");
-  std::istringstream optimiser(std::string(static_cast<const char*>(bytes.data_ptr()), bytes.nbytes()));
+  std::istringstream optimiser(bytes_of_tensor(file.at("optimiser")));
   try {
     torch::load(*optimiser_, optimiser);
   } catch (const std::exception&) {

@@ -125,7 +125,7 @@ class Trainer {
   std::vector<Lane> all_lanes_;
   std::vector<Stream> streams_;
   Stream draws_{0};
-  std::vector<Point> truths_, shown_, learner_states_;
+  std::vector<Point> truths_, learner_states_;
   std::vector<Action> actions_;
   BeliefStates held_;  // M_t of every lane
   std::vector<Pending> pending_;

@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <numeric>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace maximin {
 namespace {
 
@@ -44,6 +47,11 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
     best = candidate;
   }
   return best;
+}
+
+std::string nearest_or_all(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_name(word, candidates);
+  return nearest.empty() ? fmt::format("{}", fmt::join(candidates, ", ")) : nearest;
 }
 
 }  // namespace maximin

@@ -16,13 +16,6 @@
 namespace maximin {
 namespace {
 
-template <class Scalar>
-Scalar worst(const Values<Scalar>& w, const std::vector<int>& answers) {
-  Scalar least = w[answers.front()];
-  for (const int i : answers) least = std::min(least, w[i]);
-  return least;
-}
-
 /// The game on the attacker's graph: functions of the position.
 template <class Scalar>
 class BeliefGame {
@@ -48,7 +41,7 @@ class BeliefGame {
     for (const auto& position : graph_.positions()) {
       const auto& move = position.moves.front();
       Scalar sum(0);
-      for (const auto& branch : move.branches) sum += branch.probability * worst(w, branch.answers);
+      for (const auto& branch : move.branches) sum += branch.probability * internal::worst(w, branch.answers);
       tw[i++] = move.reward + mdp_.discount() * sum;
     }
   }
@@ -56,7 +49,7 @@ class BeliefGame {
   /// min_{t in B(s)} W(s, B(t)).
   Values<Scalar> start_values(const Values<Scalar>& w) const {
     Values<Scalar> v(mdp_.states());
-    for (State s = 0; s < mdp_.states(); ++s) v[s] = worst(w, graph_.starts(s));
+    for (State s = 0; s < mdp_.states(); ++s) v[s] = internal::worst(w, graph_.starts(s));
     return v;
   }
 

@@ -48,20 +48,13 @@ ValuesInSteps<Scalar> backwards(const FiniteMdp<Scalar>& mdp, long steps, BestOf
 }
 
 template <class Scalar>
-Scalar worst(const Values<Scalar>& w, const std::vector<int>& answers) {
-  Scalar least = w[answers.front()];
-  for (const int i : answers) least = std::min(least, w[i]);
-  return least;
-}
-
-template <class Scalar>
 void sweep(const internal::PositionGraph<Scalar>& graph, const Values<Scalar>& later, Values<Scalar>& now) {
   now.resize(later.size());
   Eigen::Index i = 0;
   for (const auto& position : graph.positions()) {
     const auto& move = position.moves.front();
     Scalar sum = move.reward;
-    for (const auto& branch : move.branches) sum += branch.probability * worst(later, branch.answers);
+    for (const auto& branch : move.branches) sum += branch.probability * internal::worst(later, branch.answers);
     now[i++] = sum;
   }
 }
@@ -116,7 +109,7 @@ BeliefGameInSteps<Scalar> solve_belief_game_in_steps(const FiniteMdp<Scalar>& md
     later.swap(now);
   }
   game.v.resize(mdp.states());
-  for (State s = 0; s < mdp.states(); ++s) game.v[s] = worst(later, graph.starts(s));
+  for (State s = 0; s < mdp.states(); ++s) game.v[s] = internal::worst(later, graph.starts(s));
   if (options.keep_positions) {
     int number = 0;
     for (const auto& p : graph.positions()) game.numbers.emplace(std::pair(p.truth, graph.belief(p)), number++);

@@ -125,4 +125,12 @@ class PositionGraph {
   Belief met_;
 };
 
+/// The least of the values of a branch's answers, i.e. what the attacker picks; `answers` holds one at least.
+template <class Scalar>
+Scalar worst(const Values<Scalar>& w, const std::vector<int>& answers) {
+  Scalar least = w[answers.front()];
+  for (const int i : answers) least = std::min(least, w[i]);
+  return least;
+}
+
 }  // namespace maximin::internal

@@ -11,7 +11,7 @@ namespace maximin::apps {
 namespace {
 
 constexpr auto refresh = std::chrono::milliseconds(100);
-constexpr int width = 30;
+constexpr int bar_width = 30;
 
 std::string seconds(double s) {
   if (s < 90) return fmt::format("{:.0f} s", s);
@@ -46,9 +46,9 @@ void Progress::draw(const std::string& note, Clock::time_point now) {
   const double share = static_cast<double>(done_) / static_cast<double>(total_);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double rate = elapsed > 0 ? static_cast<double>(done_ - done_before_) / elapsed : 0;
-  const int full = static_cast<int>(share * width);
+  const int full = static_cast<int>(share * bar_width);
   const std::string left = rate > 0 ? seconds(static_cast<double>(total_ - done_) / rate) : "?";
-  fmt::print(stderr, "\r\033[K[{:=<{}}{: <{}}] {}/{} {}  {:.0f}/s  {} left  {}", "", full, "", width - full, done_,
+  fmt::print(stderr, "\r\033[K[{:=<{}}{: <{}}] {}/{} {}  {:.0f}/s  {} left  {}", "", full, "", bar_width - full, done_,
              total_, unit_, rate, left, note);
   std::fflush(stderr);
 }

@@ -14,10 +14,10 @@ void add_attack_options(CLI::App& sub, AttackedAgent& o) {
       "--judge", o.judge,
       "Agent file whose values adaptive attacks go by; unless given, the vanilla agent of the same seed beside "
       "the file, else the agent itself");
-  sub.add_option("--belief", o.belief, "In place of the agent's own: observed, ball, exact, pf-lstm, pf-gru")
+  sub.add_option("--belief", o.change.belief, "In place of the agent's own: observed, ball, exact, pf-lstm, pf-gru")
       ->check(one_of({"observed", "ball", "exact", "pf-lstm", "pf-gru"}));
-  sub.add_option("--aggregator", o.aggregator, "In place of its own: min, mean, soft-min:BETA, cvar:ALPHA");
-  sub.add_option("--random-actions", o.random_actions, "Share of random actions, in place of its own")
+  sub.add_option("--aggregator", o.change.aggregator, "In place of its own: min, mean, soft-min:BETA, cvar:ALPHA");
+  sub.add_option("--random-actions", o.change.random_actions, "Share of random actions, in place of its own")
       ->check(real_number({.low = 0, .high = 1}));
   sub.add_option("--attack-seed", o.attack_seed, "Seed of a learned attack's training")->check(seed_number());
   sub.add_option("--attacker", o.attacker, "File of a learned attack: read where it exists, else written");
@@ -31,11 +31,7 @@ Match prepare_match(const AttackedAgent& o) {
   match.eps = o.eps >= 0 ? o.eps : spec.eps;
   // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
   if (!spec.knows_eps()) spec.eps = match.eps;
-  match.acting = deep::acting_of(spec);
-  if (!o.belief.empty()) match.acting.belief = o.belief;
-  if (!o.belief.empty() && o.belief != spec.belief) match.acting.belief_states = 32;  // as in the table's ablation
-  if (!o.aggregator.empty()) match.acting.aggregator = o.aggregator;
-  if (o.random_actions >= 0) match.acting.random_actions = o.random_actions;
+  match.acting = deep::acting_of(spec, o.change);
   match.agent = deep::make_agent(*match.trained, match.acting);
   deep::AttackTarget target{match.trained.get(), match.acting, match.trained->values()};
   const std::filesystem::path vanilla = o.file.parent_path() / fmt::format("dqn-seed{}.agent", spec.training.seed);

@@ -18,8 +18,7 @@ struct AttackedAgent {
   double eps = -1;  ///< of the attack; negative: what the agent was trained for
   std::filesystem::path
       judge;  ///< whose values adaptive attacks go by; empty: a vanilla agent beside the file, or its own
-  std::string belief, aggregator;  ///< in place of the agent's own; empty: its own
-  double random_actions = -1;
+  deep::ActingChange change;  ///< how it acts otherwise than it was trained to
   std::uint64_t attack_seed = 1;
   std::filesystem::path attacker;  ///< where a learned attack is kept
   bool quick = false;

@@ -87,9 +87,9 @@ void add_evaluate(CLI::App& app, Task& task) {
   auto command = std::make_shared<EvaluateCommand>();
   CLI::App* sub = app.add_subcommand("evaluate", "What trained agents get under attacks");
   sub->add_option("FILE", command->files, "Agent files")->required();
-  std::vector<std::string> names;
-  for (const auto& attack : deep::named_attacks()) names.push_back(attack.name);
-  sub->add_option("--attack", command->attacks, "One or more attacks")->check(one_of(names))->capture_default_str();
+  sub->add_option("--attack", command->attacks, "One or more attacks")
+      ->check(one_of(deep::attack_names()))
+      ->capture_default_str();
   add_attack_options(*sub, command->options);
   sub->add_option("--episodes", command->episodes, "Episodes of each")
       ->check(whole_number(2, 1'000'000))

@@ -55,7 +55,7 @@ class TableMaker {
 
   int run() {
     deep::ResultFile file = deep::ResultFile::open(command_.output / (command_.kind + ".json"), planned_table());
-    for (const bool first : {true, false}) train_all(first);
+    train_all();
     evaluate_all(file);
     if (!stop_) write_pages(file.table());
     if (stop_) note("interrupted; the same command goes on where it stopped");
@@ -86,33 +86,16 @@ class TableMaker {
     return table;
   }
 
-  /// Vanilla agents first, since others begin with them.
-  void train_all(bool first) {
+  /// The agents of the table, and vanilla ones, by whose values adaptive attacks go.
+  void train_all() {
     std::vector<deep::AgentSpec> specs;
-    std::set<std::string> names;
     for (int k = 0; k < command_.seeds; ++k) {
       for (const PlannedCell& cell : plan_) {
-        const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.effort());
-        add_training(first, spec, specs, names);
-        const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, command_.seed(k), command_.effort());
-        add_training(first, vanilla, specs, names);
+        specs.push_back(spec_of(cell, command_.seed(k), command_.effort()));
+        specs.push_back(deep::recipe("dqn", specs.back().eps, command_.seed(k), command_.effort()));
       }
     }
-    std::atomic<long> done = 0;
-    std::vector<std::function<void()>> jobs;
-    for (const deep::AgentSpec& spec : specs) {
-      jobs.emplace_back([&, spec] {
-        deep::train_agent(spec, command_.folder, torch::kCPU, command_.effort(), line_.hooks(stop_));
-        line_.say("");
-        line_.done(++done, static_cast<long>(specs.size()));
-      });
-    }
-    run_in_parallel(jobs, command_.jobs, stop_);
-  }
-
-  static void add_training(bool first, const deep::AgentSpec& spec, std::vector<deep::AgentSpec>& specs,
-                           std::set<std::string>& names) {
-    if (spec.start_from.empty() == first && names.insert(spec.name()).second) specs.push_back(spec);
+    train_side_by_side(std::move(specs), command_.folder, torch::kCPU, command_.effort(), command_.jobs, line_, stop_);
   }
 
   void evaluate_all(deep::ResultFile& file) {
@@ -151,11 +134,7 @@ class TableMaker {
   /// The agent of a cell and the attack on it. Its attack is empty where it was interrupted.
   Ready prepare(const PlannedCell& cell, std::uint64_t seed) {
     const deep::AgentSpec spec = spec_of(cell, seed, command_.effort());
-    Ready ready{deep::read_agent(agent_file(spec)), deep::acting_of(spec), nullptr, nullptr};
-    if (!cell.belief.empty()) ready.acting.belief = cell.belief;
-    if (!cell.aggregator.empty()) ready.acting.aggregator = cell.aggregator;
-    if (!cell.belief.empty()) ready.acting.belief_states = 32;
-    if (cell.random_actions >= 0) ready.acting.random_actions = cell.random_actions;
+    Ready ready{deep::read_agent(agent_file(spec)), deep::acting_of(spec, cell.change), nullptr, nullptr};
     // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
     if (!spec.knows_eps()) ready.trained.spec.eps = cell.attack_eps;
     ready.agent = deep::make_agent(ready.trained, ready.acting);
@@ -212,7 +191,8 @@ class TableMaker {
     std::vector<deep::EpisodeTrace> out;
     for (const PlannedCell& cell : plan_) {
       const bool shown = (cell.kind == "bp-dqn" || cell.kind == "dqn" || cell.kind == "bp-dqn-lstm") &&
-                         cell.belief.empty() && cell.attack_eps > 0.3 && out.size() < 12 && cell.block != "ablation";
+                         cell.change.belief.empty() && cell.attack_eps > 0.3 && out.size() < 12 &&
+                         cell.block != "ablation";
       if (!shown) continue;
       const Ready ready = prepare(cell, command_.seed(0));
       if (!ready.attack) continue;
@@ -274,9 +254,8 @@ void add_table(CLI::App& app, Task& task) {
       ->check(whole_number(2, 1'000'000))
       ->capture_default_str();
   sub->add_option("--only", command->only, "Agents to leave in, e.g. dqn bp-dqn")->check(one_of(deep::agent_kinds()));
-  std::vector<std::string> attacks;
-  for (const auto& attack : deep::named_attacks()) attacks.push_back(attack.name);
-  sub->add_option("--attacks", command->attacks, "Attacks to leave in, e.g. none pgd")->check(one_of(attacks));
+  sub->add_option("--attacks", command->attacks, "Attacks to leave in, e.g. none pgd")
+      ->check(one_of(deep::attack_names()));
   sub->add_option("--jobs", command->jobs, "Trainings and evaluations side by side")
       ->check(whole_number(1, 256))
       ->capture_default_str();

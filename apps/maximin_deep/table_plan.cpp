@@ -103,8 +103,8 @@ PlannedCell planned(const std::string& block, const Row& row, double trained_eps
   p.block = block;
   p.kind = row.kind;
   p.trained_eps = trained_eps;
-  p.belief = row.belief;
-  p.aggregator = row.aggregator;
+  p.change.belief = row.belief;
+  p.change.aggregator = row.aggregator;
   p.attack = attack;
   p.attack_eps = attack_eps;
   p.cell.agent = row.title;
@@ -175,7 +175,7 @@ std::vector<PlannedCell> aggregators_plan() {
     add_columns(plan, aggregator_block, {"bp-dqn", title.c_str()}, all);
     for (std::size_t i = first; i < plan.size(); ++i) {
       plan[i].config = fmt::format(R"({{"kind": "bp-dqn-{0}", "aggregator": "{0}"}})", choice.aggregator);
-      plan[i].random_actions = choice.random_actions;
+      plan[i].change.random_actions = choice.random_actions;
     }
   }
   return plan;

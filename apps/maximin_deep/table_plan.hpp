@@ -15,11 +15,9 @@ struct PlannedCell {
   deep::ResultCell cell;  ///< titles, the paper's figure, the target; no runs yet
   std::string kind;       ///< of the agent that is trained, e.g. "bp-dqn"
   double trained_eps = 0.1;
-  std::string config;          ///< JSON that changes the recipe; empty: none
-  std::string belief;          ///< acts by this belief instead of its own; empty: its own
-  std::string aggregator;      ///< and by this aggregator
-  double random_actions = -1;  ///< share of random actions; negative: its own
-  std::string attack;          ///< name of the attack
+  std::string config;         ///< JSON that changes the recipe; empty: none
+  deep::ActingChange change;  ///< how it acts otherwise than it was trained to
+  std::string attack;         ///< name of the attack
   double attack_eps = 0;
 };
 

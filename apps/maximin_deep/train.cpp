@@ -39,17 +39,6 @@ struct TrainCommand {
   deep::Effort effort() const { return {quick, frames}; }
 };
 
-/// Puts what others begin with before them: it is trained once, not by each of them at the same time.
-void add_beginnings(std::vector<deep::AgentSpec>& specs, const deep::Effort& effort) {
-  std::set<std::string> names;
-  for (const deep::AgentSpec& spec : specs) names.insert(spec.name());
-  for (std::size_t i = 0; i < specs.size(); ++i) {
-    const auto first = deep::beginning_of(specs[i], effort);
-    if (first && names.insert(first->name()).second) specs.push_back(*first);
-  }
-  std::stable_partition(specs.begin(), specs.end(), [](const deep::AgentSpec& s) { return s.start_from.empty(); });
-}
-
 /// What is asked for.
 std::vector<deep::AgentSpec> planned(const TrainCommand& command) {
   std::vector<deep::AgentSpec> specs;
@@ -72,34 +61,18 @@ std::vector<deep::AgentSpec> planned(const TrainCommand& command) {
 }
 
 int train(const TrainCommand& command) {
-  std::vector<deep::AgentSpec> specs = planned(command);
+  const std::vector<deep::AgentSpec> specs = planned(command);
   if (command.print_config) {
     Json all = Json::array();
     for (const deep::AgentSpec& spec : specs) all.push_back(deep::to_json(spec));
     print(json_text(specs.size() == 1 ? all[0] : Json{{"agents", all}}));
     return ExitCode::success;
   }
-  add_beginnings(specs, command.effort());
   const torch::Device device = device_named(command.device);
   if (command.quick) note("--quick: a training of seconds, which shows that everything works and no more");
   const std::atomic<bool>& stop = stop_on_interrupt();
   WorkLine line("train");
-  std::atomic<long> done = 0;
-  std::vector<std::optional<deep::TrainedAgent>> trained(specs.size());
-  // Agents that begin with a vanilla one of the same seed wait until all those are there.
-  for (const bool first : {true, false}) {
-    std::vector<std::function<void()>> jobs;
-    std::set<std::uint64_t> seeds;
-    for (std::size_t i = 0; i < specs.size(); ++i) {
-      if (specs[i].start_from.empty() != first) continue;
-      jobs.emplace_back([&, i] {
-        trained[i] = deep::train_agent(specs[i], command.folder, device, command.effort(), line.hooks(stop));
-        line.say("");
-        line.done(++done, static_cast<long>(specs.size()));
-      });
-    }
-    run_in_parallel(jobs, command.jobs, stop);
-  }
+  const auto trained = train_side_by_side(specs, command.folder, device, command.effort(), command.jobs, line, stop);
   Table table;
   table.column("agent", Align::left).column("seconds").column("belief model, s").column("file", Align::left);
   Json all = Json::array();

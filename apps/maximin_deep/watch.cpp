@@ -49,9 +49,9 @@ void add_watch(CLI::App& app, Task& task) {
   auto command = std::make_shared<WatchCommand>();
   CLI::App* sub = app.add_subcommand("watch", "An episode as a moving picture: truth, what is shown, what is believed");
   sub->add_option("FILE", command->options.file, "Agent file")->required();
-  std::vector<std::string> names;
-  for (const auto& attack : deep::named_attacks()) names.push_back(attack.name);
-  sub->add_option("--attack", command->options.attack, "The attack")->check(one_of(names))->capture_default_str();
+  sub->add_option("--attack", command->options.attack, "The attack")
+      ->check(one_of(deep::attack_names()))
+      ->capture_default_str();
   add_attack_options(*sub, command->options);
   sub->add_option("--seed", command->seed, "Episodes are drawn from (seed, number)")
       ->check(seed_number())

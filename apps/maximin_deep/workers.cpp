@@ -1,8 +1,10 @@
 #include <maximin/apps/maximin_deep/workers.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -49,6 +51,36 @@ void run_in_parallel(const std::vector<std::function<void()>>& jobs, int threads
     work();
   }
   if (error) std::rethrow_exception(error);
+}
+
+std::vector<std::optional<deep::TrainedAgent>> train_side_by_side(std::vector<deep::AgentSpec> specs,
+                                                                  const std::filesystem::path& folder,
+                                                                  torch::Device device, const deep::Effort& effort,
+                                                                  int threads, WorkLine& line,
+                                                                  const std::atomic<bool>& stop) {
+  std::set<std::string> names;
+  std::erase_if(specs, [&](const deep::AgentSpec& s) { return !names.insert(s.name()).second; });
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const auto first = deep::beginning_of(specs[i], effort);
+    if (first && names.insert(first->name()).second) specs.push_back(*first);
+  }
+  const auto begins_with_nothing = [](const deep::AgentSpec& s) { return s.start_from.empty(); };
+  std::stable_partition(specs.begin(), specs.end(), begins_with_nothing);
+  std::vector<std::optional<deep::TrainedAgent>> trained(specs.size());
+  std::atomic<long> done = 0;
+  for (const bool first : {true, false}) {
+    std::vector<std::function<void()>> jobs;
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      if (begins_with_nothing(specs[i]) != first) continue;
+      jobs.emplace_back([&, i] {
+        trained[i] = deep::train_agent(specs[i], folder, device, effort, line.hooks(stop));
+        line.say("");
+        line.done(++done, static_cast<long>(specs.size()));
+      });
+    }
+    run_in_parallel(jobs, threads, stop);
+  }
+  return trained;
 }
 
 WorkLine::WorkLine(std::string title) : progress_(std::move(title)) {}

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,5 +38,13 @@ class WorkLine {
   long done_ = 0, of_ = 0;
   StageProgress progress_;
 };
+
+/// Trains the agents side by side, before them and once what they begin with, and returns all of them, what others
+/// begin with first. Empty ones were stopped.
+std::vector<std::optional<deep::TrainedAgent>> train_side_by_side(std::vector<deep::AgentSpec> specs,
+                                                                  const std::filesystem::path& folder,
+                                                                  torch::Device device, const deep::Effort& effort,
+                                                                  int threads, WorkLine& line,
+                                                                  const std::atomic<bool>& stop);
 
 }  // namespace maximin::apps

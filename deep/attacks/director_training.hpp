@@ -11,7 +11,7 @@ namespace maximin::deep {
 
 struct DirectorTraining {
   std::uint64_t seed = 1;
-  long frames = 300'000;  ///< steps of one environment
+  long frames = 600'000;  ///< steps of one environment
   Lane lanes = 128;       ///< environments in step
   long ticks = 32;        ///< steps of every lane between two rounds of learning
   long horizon = ContinuousGridworld::horizon;

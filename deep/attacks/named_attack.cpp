@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <maximin/deep/attacks/adaptive_director.hpp>
 #include <maximin/deep/attacks/best_response_attack.hpp>
@@ -96,14 +95,16 @@ const std::vector<NamedAttack>& named_attacks() {
 }
 
 const NamedAttack& attack_named(const std::string& name) {
-  std::vector<std::string> names;
   for (const NamedAttack& attack : named_attacks()) {
     if (attack.name == name) return attack;
-    names.push_back(attack.name);
   }
-  const std::string nearest = nearest_name(name, names);
-  throw InputError(fmt::format("attack: {}, expected {}", name,
-                               nearest.empty() ? fmt::format("{}", fmt::join(names, ", ")) : nearest));
+  throw InputError(fmt::format("attack: {}, expected {}", name, nearest_or_all(name, attack_names())));
+}
+
+std::vector<std::string> attack_names() {
+  std::vector<std::string> names;
+  for (const NamedAttack& attack : named_attacks()) names.push_back(attack.name);
+  return names;
 }
 
 std::shared_ptr<GridAttack> make_attack(const AttackSetting& setting, const AttackTarget& target) {

@@ -22,6 +22,8 @@ struct NamedAttack {
 
 /// All of them, weakest knowledge first.
 const std::vector<NamedAttack>& named_attacks();
+/// Their names, in the same order.
+std::vector<std::string> attack_names();
 
 /// The attack of this name. Throws InputError on a name that there is none of, naming the nearest.
 const NamedAttack& attack_named(const std::string& name);

@@ -21,7 +21,7 @@ void RandomAttack::perturb(std::span<const Lane> lanes, std::span<const Point> t
 
 void WithinBallInStep::perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                                std::span<Stream> streams, std::span<Point> shown) {
-  attack_->perturb(lanes, truths, agent, streams, shown);
+  attack().perturb(lanes, truths, agent, streams, shown);
   for (std::size_t k = 0; k < lanes.size(); ++k) {
     if (ball_.contains(truths[k], shown[k])) continue;
     throw std::logic_error(fmt::format("attack: showed ({}, {}) when ({}, {}) was true, which is outside its ball",

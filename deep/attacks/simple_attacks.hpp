@@ -26,16 +26,13 @@ class RandomAttack final : public GridAttack {
 
 /// Any attack, held to the rules: throws std::logic_error when it shows a point outside the ball or the world, so that
 /// a broken attack can never be reported as a strong one.
-class WithinBallInStep final : public GridAttack {
+class WithinBallInStep final : public WrappedAttack {
  public:
-  WithinBallInStep(GridAttack& attack, const ObservationBall& ball) : attack_(&attack), ball_(ball) {}
-  void resize(Lane lanes) override { attack_->resize(lanes); }
-  void forget(Lane lane) override { attack_->forget(lane); }
+  WithinBallInStep(GridAttack& attack, const ObservationBall& ball) : WrappedAttack(attack), ball_(ball) {}
   void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                std::span<Stream> streams, std::span<Point> shown) override;
 
  private:
-  GridAttack* attack_;
   ObservationBall ball_;
 };
 

@@ -31,16 +31,13 @@ std::shared_ptr<GridAttack> training_attack(const std::string& name, const Obser
   if (name != "mixed") {
     throw InputError("training attack: " + name + ", expected none, random, pgd, min-best or mixed");
   }
-  Stream unused(0);
-  auto frozen = std::make_shared<QNetwork>(judge.shape(), unused);
-  frozen->copy_from(judge);
   std::vector<MixedAttack::Part> parts;
   parts.push_back({std::make_shared<NoAttack>(), 0.1});
   parts.push_back({std::make_shared<RandomAttack>(ball), 0.1});
   parts.push_back({std::make_shared<ConstantOffsetAttack>(ball), 0.25});
   parts.push_back({gradient(trained, ball, AttackObjective::value), 0.1});
   parts.push_back({gradient(trained, ball, AttackObjective::min_best), 0.1});
-  parts.push_back({std::make_shared<BestResponseAttack>(frozen, ball, BestResponseOptions{2, 2}), 0.35});
+  parts.push_back({std::make_shared<BestResponseAttack>(frozen_copy(judge), ball, BestResponseOptions{2, 2}), 0.35});
   return std::make_shared<MixedAttack>(std::move(parts));
 }
 

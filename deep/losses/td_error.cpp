@@ -19,7 +19,11 @@ torch::Tensor next_state_target(const Batch& batch, ActionValueModule& online, A
   const torch::Tensor values = target.forward(batch.next_states);
   const torch::Tensor next =
       options.double_q ? of_actions(values, online.forward(batch.next_states).argmax(1)) : values.amax(1);
-  return batch.rewards + options.discount * (1 - batch.terminal) * next;
+  return bootstrapped(batch, options.discount, next);
+}
+
+torch::Tensor bootstrapped(const Batch& batch, double discount, const torch::Tensor& next) {
+  return batch.rewards + discount * (1 - batch.terminal) * next;
 }
 
 torch::Tensor of_actions(const torch::Tensor& values, const torch::Tensor& actions) {

@@ -23,6 +23,9 @@ struct TdOptions {
 torch::Tensor next_state_target(const Batch& batch, ActionValueModule& online, ActionValueModule& target,
                                 const TdOptions& options);
 
+/// R + discount (1 - terminal) next, [b]: a target, given what the next state is worth.
+torch::Tensor bootstrapped(const Batch& batch, double discount, const torch::Tensor& next);
+
 /// Column `actions` ([b], int64) of values [b, actions], [b].
 torch::Tensor of_actions(const torch::Tensor& values, const torch::Tensor& actions);
 

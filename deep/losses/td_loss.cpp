@@ -1,5 +1,7 @@
 #include <maximin/deep/losses/td_loss.hpp>
 
+#include <maximin/deep/losses/td_error.hpp>
+
 namespace maximin::deep {
 
 torch::Tensor values_over(const BeliefStates& belief, ActionValueModule& q) {
@@ -16,17 +18,18 @@ torch::Tensor TdLoss::target_values(const Batch& batch, QNetwork& online, QNetwo
     next = aggregate(options_.aggregator, q.amax(2, true), weights).squeeze(1);
   } else if (options_.double_q) {
     const torch::Tensor chooser = aggregate(options_.aggregator, values_over(batch.next_belief, online), weights);
-    next = aggregate(options_.aggregator, q, weights).gather(1, chooser.argmax(1, true)).squeeze(1);
+    next = of_actions(aggregate(options_.aggregator, q, weights), chooser.argmax(1));
   } else {
     next = aggregate(options_.aggregator, q, weights).amax(1);
   }
-  return batch.rewards + options_.discount * (1 - batch.terminal) * next;
+  return bootstrapped(batch, options_.discount, next);
 }
 
 LossValue TdLoss::operator()(const Batch& batch, QNetwork& online, QNetwork& target, const Progress&) {
   const torch::Tensor y = target_values(batch, online, target);
-  const torch::Tensor q = online.forward(batch.states).gather(1, batch.actions.unsqueeze(1)).squeeze(1);
-  return {torch::huber_loss(q, y, torch::Reduction::None, options_.huber), (y - q).detach()};
+  const torch::Tensor q = of_actions(online.forward(batch.states), batch.actions);
+  const torch::Tensor error = y - q;
+  return {huber(error, options_.huber), error.detach()};
 }
 
 }  // namespace maximin::deep

@@ -59,7 +59,7 @@ torch::Tensor WocarLoss::target_values(const Batch& batch, QNetwork& online, QNe
   const torch::Tensor values = target.forward(next);
   const torch::Tensor chooser = options_.td.double_q ? mix(online.forward(next), critic_->forward(next))
                                                      : mix(values, critic_target_->forward(next));
-  return batch.rewards + options_.td.discount * (1 - batch.terminal) * of_actions(values, chooser.argmax(1));
+  return bootstrapped(batch, options_.td.discount, of_actions(values, chooser.argmax(1)));
 }
 
 torch::Tensor WocarLoss::critic_target_values(const Batch& batch, QNetwork& online, const Progress& progress) const {
@@ -69,7 +69,7 @@ torch::Tensor WocarLoss::critic_target_values(const Batch& batch, QNetwork& onli
   const torch::Tensor values = valuer->forward(batch.next_states);
   const torch::Tensor worst =
       values.masked_fill(torch::logical_not(reach), std::numeric_limits<double>::infinity()).amin(1);
-  return batch.rewards + options_.td.discount * (1 - batch.terminal) * worst;
+  return bootstrapped(batch, options_.td.discount, worst);
 }
 
 torch::Tensor WocarLoss::robust_term(const Batch& batch, QNetwork& online, const torch::Tensor& values,

@@ -26,7 +26,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Row = std::vector<std::optional<double>>;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string refusal(const std::function<void()>& what) {
   try {
@@ -52,7 +51,7 @@ TEST(TrainingLog, IsReadAsWritten) {
     log.append({200, 0.1, 1e-17});
     EXPECT_NE(refusal([&] { log.append({200, 1, 1}); }).find("frames 200, expected more than 200"), std::string::npos);
     EXPECT_NE(refusal([&] { log.append({300, 1}); }).find("2 values, expected 3"), std::string::npos);
-    EXPECT_NE(refusal([&] { log.append({300, nan, 1}); }).find("return is nan"), std::string::npos);
+    EXPECT_NE(refusal([&] { log.append({300, sample::nan, 1}); }).find("return is nan"), std::string::npos);
     EXPECT_NE(refusal([&] { log.append({std::nullopt, 1, 1}); }), "");
     EXPECT_NE(refusal([&] {
                 TrainingLogWriter(path, {"frames", "return", "loss"});
@@ -151,13 +150,13 @@ TEST(Trace, RefusesWhatIsNone) {
     return refusal([&] { to_json(trace); });
   };
   EXPECT_EQ(says([](EpisodeTrace&) {}), "");
-  EXPECT_TRUE(says([](EpisodeTrace& t) { t.steps[2].truth.x = nan; }).starts_with("trace: step 2: truth (nan"));
+  EXPECT_TRUE(says([](EpisodeTrace& t) { t.steps[2].truth.x = sample::nan; }).starts_with("trace: step 2: truth (nan"));
   EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].shown.y = 1e9; }), "");
   EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].action = 8; }), "");
-  EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].reward = nan; }), "");
-  EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].belief.points[0].x = nan; }), "");
+  EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].reward = sample::nan; }), "");
+  EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].belief.points[0].x = sample::nan; }), "");
   EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].belief.weights.pop_back(); }), "");
-  EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].belief.weights[0] = nan; }), "");
+  EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].belief.weights[0] = sample::nan; }), "");
   EXPECT_NE(says([](EpisodeTrace& t) { t.steps[2].belief.boxes = {{2, 1, 0, 1}}; }), "");
   EXPECT_NE(says([](EpisodeTrace& t) { t.eps = -1; }), "");
   EXPECT_NE(says([](EpisodeTrace& t) { t.end.x = 11; }), "");
@@ -273,7 +272,7 @@ TEST(Animation, TimesAreInOrder) {
 
 TEST(Animation, RefusesAndEscapes) {
   EpisodeTrace trace = sample::episode(sample::Kind::box_belief, 0.5, 3, 8);
-  for (const AnimationOptions& bad : {AnimationOptions{0, 1, true}, AnimationOptions{nan, 1, true},
+  for (const AnimationOptions& bad : {AnimationOptions{0, 1, true}, AnimationOptions{sample::nan, 1, true},
                                       AnimationOptions{1, -1, true}, AnimationOptions{1e9, 1, true}}) {
     EXPECT_NE(refusal([&] { animated_svg(trace, bad); }), "");
   }
@@ -283,7 +282,7 @@ TEST(Animation, RefusesAndEscapes) {
   EXPECT_EQ(Wellformed::flaw(svg), "");
   EXPECT_EQ(svg.find("<script"), svg.npos);
   EXPECT_NE(svg.find("textLength"), svg.npos) << "a long title is squeezed";
-  trace.steps[1].shown.x = nan;
+  trace.steps[1].shown.x = sample::nan;
   EXPECT_NE(refusal([&] { animated_svg(trace); }), "");
 }
 

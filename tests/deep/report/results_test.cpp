@@ -22,7 +22,6 @@ namespace maximin::deep {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 ResultCell cell(std::vector<SeedRun> runs, std::optional<Target> target = {}) {
   return {"BP-DQN", "PGD", 0.5, std::move(runs), {}, target, "", {}};
@@ -113,7 +112,7 @@ TEST(Results, ForeignAndBrokenDocumentsAreRefusedInOneLine) {
 }
 
 TEST(Results, NumbersThatAreNoneAreRefused) {
-  for (const double bad : {nan, std::numeric_limits<double>::infinity()}) {
+  for (const double bad : {sample::nan, std::numeric_limits<double>::infinity()}) {
     ResultCell c = cell(seeds({1, 2}));
     c.runs[1].returns[1] = bad;
     try {
@@ -149,7 +148,7 @@ TEST(ResultFile, GoesOnWhereItStopped) {
     EXPECT_EQ(read_results(path), file.table()) << "on disk at once";
     EXPECT_THROW(file.put("block", cell({}), runs[0]), InputError) << "the same seed twice";
     SeedRun broken = runs[1];
-    broken.returns[0] = nan;
+    broken.returns[0] = sample::nan;
     EXPECT_THROW(file.put("block", cell({}), broken), InputError);
     EXPECT_EQ(read_results(path), file.table()) << "a refused run leaves no trace";
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@
 
 /// Things to show: real episodes of a small planner, and tables with made-up numbers.
 namespace maximin::deep::sample {
+
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The best value of the places, on squares of side 1/4, by value iteration.
 class Planner {
