@@ -41,8 +41,9 @@ AgentSpec belief_pessimistic(std::uint64_t seed, const char* belief) {
   s.belief = belief;
   s.belief_states = 32;
   s.training_belief_states = 8;
+  // Chosen beforehand on other seeds, results/README.md; the random actions are a way out of loops.
   s.aggregator = "mean";
-  s.random_actions = 0.02;  // a way out of loops; as the aggregator, chosen beforehand on other seeds: results/README.md
+  s.random_actions = 0.02;
   s.double_q = false;
   s.train_attack = "mixed";
   return s;
