@@ -183,7 +183,7 @@ void report_agent(const LatticeWorld& world, const std::filesystem::path& file, 
   fmt::print("{}: belief {}{}, {}{}\n", file.filename().string(), acting.belief,
              acting.belief.starts_with("pf-") ? " (here: exact)" : "", acting.aggregator,
              acting.random_actions > 0 ? ", its random actions left out" : "");
-  const AttackTarget target{&trained, acting, values};
+  const AttackTarget target{values, values, [&] { return make_agent(trained, acting); }};
   for (const NamedAttack& named : named_attacks()) {
     if (named.learned ? settings.learned == "no" : !settings.attacks && named.name != "none") continue;
     if (named.name == "through-defence") continue;  // differentiates what the agent goes by, off the lattice

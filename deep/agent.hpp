@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include <maximin/deep/report/trace.hpp>
 #include <maximin/gridworld/box_union.hpp>
 #include <maximin/gridworld/gridworld.hpp>
 #include <maximin/theory/random.hpp>
@@ -41,6 +42,13 @@ class GridAgent {
 
   /// What it has in mind in this lane. An agent without memory has nothing.
   virtual Mind mind(Lane) const { return {}; }
+
+  /// For whoever watches it play, right after it acted in a lane: is this place possible to it, what is the area of
+  /// those that are, and how do they look; and how often, over all lanes, was nothing left possible.
+  virtual bool holds(Lane, Point) const { return false; }
+  virtual double belief_size(Lane) const { return 0; }
+  virtual TraceBelief picture(Lane) const { return {}; }
+  virtual long empty_intersections() const { return 0; }
 };
 
 /// Whoever perturbs what an agent of the Gridworld sees. Models AttackInStep.

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <maximin/deep/set_beliefs.hpp>
 #include <maximin/deep/tensors.hpp>
 
 namespace maximin::deep {
@@ -75,6 +76,20 @@ void BeliefAgent::remember(std::span<const Lane> lanes, std::span<const Action> 
     minds_[static_cast<std::size_t>(lanes[k])] = {
         true, actions[k], means[k], {lows[k].x, highs[k].x, lows[k].y, highs[k].y}};
   }
+}
+
+TraceBelief BeliefAgent::picture(Lane lane) const {
+  TraceBelief out;
+  if (const auto* sets = dynamic_cast<const SetBeliefs*>(belief_.get())) {
+    out.boxes = sets->set(lane).boxes();
+    return out;
+  }
+  const torch::Tensor places = acted_on_.states[0].contiguous(), weights = acted_on_.weights[0].contiguous();
+  for (long k = 0; k < places.size(0); ++k) {
+    out.points.push_back({places[k][0].item<double>(), places[k][1].item<double>()});
+    out.weights.push_back(weights[k].item<double>());
+  }
+  return out;
 }
 
 torch::Tensor BeliefAgent::would_value(std::span<const Lane> lanes, std::span<const Point> shown) const {

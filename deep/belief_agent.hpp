@@ -29,6 +29,13 @@ class BeliefAgent final : public GridAgent {
   /// Of a belief over places; of other beliefs (images) only the last action is told.
   Mind mind(Lane lane) const override { return minds_[static_cast<std::size_t>(lane)]; }
 
+  bool holds(Lane lane, Point place) const override { return belief_->holds(lane, place); }
+  double belief_size(Lane lane) const override { return belief_->size(lane); }
+  long empty_intersections() const override { return belief_->empty_intersections(); }
+  /// The sets that it knows exactly; of other beliefs the states that it acted on last, where those were this lane's
+  /// only.
+  TraceBelief picture(Lane lane) const override;
+
   /// The values by which `would_do` chooses, [n, actions].
   torch::Tensor would_value(std::span<const Lane> lanes, std::span<const Point> shown) const;
 

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include <maximin/deep/attacks/simple_attacks.hpp>
-#include <maximin/deep/set_beliefs.hpp>
 #include <maximin/theory/rollout_in_step.hpp>
 
 namespace maximin::deep {
@@ -24,7 +23,7 @@ class Watched {
   using ObservationType = Point;
   using ActionType = Action;
 
-  explicit Watched(BeliefAgent& agent) : agent_(&agent) {}
+  explicit Watched(GridAgent& agent) : agent_(&agent) {}
   void resize(Lane lanes) { agent_->resize(lanes); }
   void forget(Lane lane) { agent_->forget(lane); }
   void act(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Stream> streams,
@@ -32,12 +31,12 @@ class Watched {
     agent_->act(lanes, shown, streams, actions);
     if (looked) looked(lanes);
   }
-  const BeliefAgent& agent() const { return *agent_; }
+  const GridAgent& agent() const { return *agent_; }
 
   std::function<void(std::span<const Lane>)> looked;
 
  private:
-  BeliefAgent* agent_;
+  GridAgent* agent_;
 };
 
 /// The attack on what is watched: keeps to the ball, and remembers the truths.
@@ -58,24 +57,9 @@ class WatchedAttack {
   std::vector<Point> truths_;
 };
 
-TraceBelief belief_for_pictures(const BeliefAgent& agent, Lane lane) {
-  TraceBelief out;
-  if (const auto* sets = dynamic_cast<const SetBeliefs*>(&agent.belief())) {
-    out.boxes = sets->set(lane).boxes();
-    return out;
-  }
-  const BeliefStates& states = agent.acted_on();
-  const torch::Tensor places = states.states[0].contiguous(), weights = states.weights[0].contiguous();
-  for (long k = 0; k < places.size(0); ++k) {
-    out.points.push_back({places[k][0].item<double>(), places[k][1].item<double>()});
-    out.weights.push_back(weights[k].item<double>());
-  }
-  return out;
-}
-
 }  // namespace
 
-AgentEvaluation evaluate_agent(BeliefAgent& agent, GridAttack& attack, const ObservationBall& ball, long episodes,
+AgentEvaluation evaluate_agent(GridAgent& agent, GridAttack& attack, const ObservationBall& ball, long episodes,
                                std::uint64_t seed) {
   AgentEvaluation out;
   ContinuousGridworld world;
@@ -86,8 +70,8 @@ AgentEvaluation evaluate_agent(BeliefAgent& agent, GridAttack& attack, const Obs
   watched.looked = [&](std::span<const Lane> lanes) {
     for (std::size_t k = 0; k < lanes.size(); ++k) {
       ++out.steps;
-      held += agent.belief().holds(lanes[k], bounded.truths()[k]);
-      area += agent.belief().size(lanes[k]);
+      held += agent.holds(lanes[k], bounded.truths()[k]);
+      area += agent.belief_size(lanes[k]);
     }
   };
   const auto start = std::chrono::steady_clock::now();
@@ -101,11 +85,11 @@ AgentEvaluation evaluate_agent(BeliefAgent& agent, GridAttack& attack, const Obs
   for (const Episode& e : played) out.returns.push_back(e.total_reward);
   out.truth_in_belief = static_cast<double>(held) / static_cast<double>(out.steps);
   out.belief_size = area / static_cast<double>(out.steps);
-  out.empty_intersections = agent.belief().empty_intersections();
+  out.empty_intersections = agent.empty_intersections();
   return out;
 }
 
-EpisodeTrace trace_episode(BeliefAgent& agent, GridAttack& attack, const ObservationBall& ball, std::uint64_t seed,
+EpisodeTrace trace_episode(GridAgent& agent, GridAttack& attack, const ObservationBall& ball, std::uint64_t seed,
                            long number) {
   EpisodeTrace trace;
   trace.eps = ball.eps();
@@ -115,7 +99,7 @@ EpisodeTrace trace_episode(BeliefAgent& agent, GridAttack& attack, const Observa
   Watched watched(agent);
   WatchedAttack bounded(attack, ball);
   TraceBelief belief;
-  watched.looked = [&](std::span<const Lane> lanes) { belief = belief_for_pictures(agent, lanes[0]); };
+  watched.looked = [&](std::span<const Lane> lanes) { belief = agent.picture(lanes[0]); };
   EpisodesInStep options = paper_episodes(number + 1, seed);
   options.lanes = 1;
   rollout_in_step(world, watched, bounded, options, [&](long k, const StepRecord<Point, Point, Action>& record) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <maximin/deep/belief_agent.hpp>
+#include <maximin/deep/agent.hpp>
 #include <maximin/deep/report/trace.hpp>
 #include <maximin/gridworld/gridworld.hpp>
 #include <maximin/gridworld/observation_ball.hpp>
@@ -23,11 +23,11 @@ struct AgentEvaluation {
 
 /// Plays the paper's episodes, of 100 steps at most, undiscounted. Throws std::logic_error when the attack leaves the
 /// ball.
-AgentEvaluation evaluate_agent(BeliefAgent& agent, GridAttack& attack, const ObservationBall& ball, long episodes,
+AgentEvaluation evaluate_agent(GridAgent& agent, GridAttack& attack, const ObservationBall& ball, long episodes,
                                std::uint64_t seed);
 
 /// Episode `number` of the same, for pictures. The trace's agent, attack and training seed are left to the caller.
-EpisodeTrace trace_episode(BeliefAgent& agent, GridAttack& attack, const ObservationBall& ball, std::uint64_t seed,
+EpisodeTrace trace_episode(GridAgent& agent, GridAttack& attack, const ObservationBall& ball, std::uint64_t seed,
                            long number);
 
 }  // namespace maximin::deep

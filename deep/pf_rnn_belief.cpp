@@ -24,7 +24,7 @@ double into(double v, double low, double high) {
   return std::clamp(v, low + margin, high - margin);
 }
 
-double distance(Point a, Point b) {
+double sup_distance(Point a, Point b) {
   return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y));
 }
 
@@ -170,7 +170,7 @@ bool PfRnnBelief::correct(Point shown, std::span<Point> places) const {
       if (possible.empty()) break;
       q = nearest(p, possible);
     }
-    met = met || distance(p, q) <= options_.slack * ball_.eps();
+    met = met || sup_distance(p, q) <= options_.slack * ball_.eps();
     p = q;
   }
   if (met) return true;

@@ -35,6 +35,12 @@ Mind SureAgent::mind(Lane lane) const {
   return mind;
 }
 
+long SureAgent::empty_intersections() const {
+  long sum = 0;
+  for (const InLane& in : lanes_) sum += in.agent.belief_model().empty_intersections();
+  return sum;
+}
+
 void SureAgent::would_do(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Action> actions) const {
   for (std::size_t k = 0; k < lanes.size(); ++k) {
     const BoxUnion belief = lanes_[static_cast<std::size_t>(lanes[k])].agent.would_believe(shown[k]);

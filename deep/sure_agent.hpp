@@ -27,6 +27,11 @@ class SureAgent final : public GridAgent {
 
   Mind mind(Lane lane) const override;
 
+  bool holds(Lane lane, Point place) const override { return belief(lane).contains(place); }
+  double belief_size(Lane lane) const override { return belief(lane).area(); }
+  long empty_intersections() const override;
+  TraceBelief picture(Lane lane) const override { return {belief(lane).boxes(), {}, {}}; }
+
   /// What the agent would be sure of from here on if it were shown this now; minus infinity where that may not be
   /// shown.
   double would_be_sure_of(Lane lane, Point shown) const;

@@ -33,7 +33,8 @@ Match prepare_match(const AttackedAgent& o) {
   if (!spec.knows_eps()) spec.eps = match.eps;
   match.acting = deep::acting_of(spec, o.change);
   match.agent = deep::make_agent(*match.trained, match.acting);
-  deep::AttackTarget target{match.trained.get(), match.acting, match.trained->values()};
+  const std::shared_ptr<deep::ActionValueModule> values = match.trained->values();
+  deep::AttackTarget target{values, values, [&] { return deep::make_agent(*match.trained, match.acting); }};
   const std::filesystem::path vanilla = o.file.parent_path() / fmt::format("dqn-seed{}.agent", spec.training.seed);
   if (!o.judge.empty()) {
     target.judge = deep::read_agent(o.judge).values();

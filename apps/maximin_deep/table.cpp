@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -9,6 +12,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <maximin/apps/common/interrupt.hpp>
 #include <maximin/apps/common/option_checks.hpp>
@@ -21,6 +25,8 @@
 #include <maximin/deep/report/results_file.hpp>
 #include <maximin/deep/report/results_page.hpp>
 #include <maximin/deep/report/results_text.hpp>
+#include <maximin/deep/sure_agent.hpp>
+#include <maximin/gridworld/hull_control.hpp>
 #include <maximin/models/files/output_file.hpp>
 
 namespace maximin::apps {
@@ -50,8 +56,13 @@ struct TableCommand {
 /// The work of one table: trainings, then evaluations, each of them a job; what is done already is left out.
 class TableMaker {
  public:
-  TableMaker(const TableCommand& command, std::vector<PlannedCell> plan)
-      : command_(command), plan_(std::move(plan)), line_(command.kind), stop_(stop_on_interrupt()) {}
+  /// Makes those cells of the whole table that `left_in` says.
+  TableMaker(const TableCommand& command, const std::vector<PlannedCell>& whole,
+             const std::function<bool(const PlannedCell&)>& left_in)
+      : command_(command), whole_(whole), line_(command.kind), stop_(stop_on_interrupt()) {
+    std::copy_if(whole.begin(), whole.end(), std::back_inserter(plan_), left_in);
+    if (plan_.empty()) throw InputError("--only, --attacks: no such cell in the table, expected e.g. --only bp-dqn");
+  }
 
   int run() {
     deep::ResultFile file = deep::ResultFile::open(command_.output / (command_.kind + ".json"), planned_table());
@@ -63,6 +74,9 @@ class TableMaker {
   }
 
  private:
+  /// Its radius is never asked for.
+  deep::AgentSpec vanilla_spec(std::uint64_t seed) const { return deep::recipe("dqn", 0, seed, command_.effort()); }
+
   fs::path agent_file(const deep::AgentSpec& spec) const { return command_.folder / (spec.name() + ".agent"); }
 
   deep::ResultTable planned_table() const {
@@ -72,13 +86,20 @@ class TableMaker {
     table.command = fmt::format("maximin_deep table {} --seeds {} --episodes {}{}", command_.kind, command_.seeds,
                                 command_.episodes, command_.quick ? " --quick" : "");
     if (command_.frames > 0) table.command += fmt::format(" --frames {}", command_.frames);
+    if (command_.first_seed) table.command += fmt::format(" --first-seed {}", *command_.first_seed);
+    if (!command_.only.empty()) table.command += fmt::format(" --only {}", fmt::join(command_.only, " "));
+    if (!command_.attacks.empty()) table.command += fmt::format(" --attacks {}", fmt::join(command_.attacks, " "));
     table.configuration["episodes"] = command_.episodes;
     table.configuration["quick"] = command_.quick;
     if (command_.frames > 0) table.configuration["frames"] = command_.frames;
-    std::set<std::string> kinds;
-    for (const PlannedCell& cell : plan_) {
+    // Of the whole table, whatever is left in: its parts may be made one by one.
+    std::set<std::string> names;
+    for (const PlannedCell& cell : whole_) {
+      if (!cell.is_trained()) continue;
       const deep::AgentSpec spec = spec_of(cell, command_.seed(0), command_.effort());
-      if (kinds.insert(spec.name()).second) table.configuration["agents"][spec.name()] = deep::to_json(spec);
+      if (names.insert(spec.name()).second) table.configuration["agents"][spec.name()] = deep::to_json(spec);
+    }
+    for (const PlannedCell& cell : plan_) {
       deep::ResultBlock* block = table.find(cell.block);
       if (!block) block = &table.blocks.emplace_back(deep::ResultBlock{cell.block, "", {}});
       block->cells.push_back(cell.cell);
@@ -91,9 +112,9 @@ class TableMaker {
     std::vector<deep::AgentSpec> specs;
     for (int k = 0; k < command_.seeds; ++k) {
       for (const PlannedCell& cell : plan_) {
-        specs.push_back(spec_of(cell, command_.seed(k), command_.effort()));
-        specs.push_back(deep::recipe("dqn", specs.back().eps, command_.seed(k), command_.effort()));
+        if (cell.is_trained()) specs.push_back(spec_of(cell, command_.seed(k), command_.effort()));
       }
+      specs.push_back(vanilla_spec(command_.seed(k)));
     }
     train_side_by_side(std::move(specs), command_.folder, torch::kCPU, command_.effort(), command_.jobs, line_, stop_);
   }
@@ -125,44 +146,64 @@ class TableMaker {
   }
 
   struct Ready {
-    deep::TrainedAgent trained;
-    deep::Acting acting;
-    std::unique_ptr<deep::BeliefAgent> agent;
-    std::shared_ptr<deep::GridAttack> attack;
+    std::function<std::unique_ptr<deep::GridAgent>()> make_agent;
+    std::string name;  ///< that tells it from any other agent of the table
+    std::shared_ptr<deep::ActionValueModule> values;
   };
 
-  /// The agent of a cell and the attack on it. Its attack is empty where it was interrupted.
-  Ready prepare(const PlannedCell& cell, std::uint64_t seed) {
+  Ready ready_to_act(const PlannedCell& cell, std::uint64_t seed,
+                     const std::shared_ptr<deep::ActionValueModule>& vanilla) {
+    if (!cell.is_trained()) {
+      const HullControl& control = sure_control(cell.trained_eps);
+      return {[&control] { return std::make_unique<deep::SureAgent>(control); },
+              fmt::format("sure-eps{:g}-seed{}", cell.trained_eps, seed), vanilla};
+    }
     const deep::AgentSpec spec = spec_of(cell, seed, command_.effort());
-    Ready ready{deep::read_agent(agent_file(spec)), deep::acting_of(spec, cell.change), nullptr, nullptr};
+    auto trained = std::make_shared<deep::TrainedAgent>(deep::read_agent(agent_file(spec)));
+    const deep::Acting acting = deep::acting_of(spec, cell.change);
     // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
-    if (!spec.knows_eps()) ready.trained.spec.eps = cell.attack_eps;
-    ready.agent = deep::make_agent(ready.trained, ready.acting);
-    const deep::AgentSpec vanilla = deep::recipe("dqn", spec.eps, seed, command_.effort());
-    const deep::AttackTarget target{&ready.trained, ready.acting, deep::read_agent(agent_file(vanilla)).values()};
+    if (!spec.knows_eps()) trained->spec.eps = cell.attack_eps;
+    return {[trained, acting] { return deep::make_agent(*trained, acting); },
+            fmt::format("{}-{}-{}-random{:g}", spec.name(), acting.belief, acting.aggregator, acting.random_actions),
+            trained->values()};
+  }
+
+  /// Solved once for each radius; 4 squares to a move take a second, at either.
+  const HullControl& sure_control(double eps) {
+    const std::lock_guard lock(mutex_);
+    const auto found = controls_.find(eps);
+    return found != controls_.end() ? found->second
+                                    : controls_.emplace(eps, HullControl(ObservationBall(eps), 4)).first->second;
+  }
+
+  struct Match {
+    std::unique_ptr<deep::GridAgent> agent;
+    std::shared_ptr<deep::GridAttack> attack;  ///< empty where its training was interrupted
+  };
+
+  Match prepare(const PlannedCell& cell, std::uint64_t seed) {
+    const auto vanilla = deep::read_agent(agent_file(vanilla_spec(seed))).values();
+    const Ready ready = ready_to_act(cell, seed, vanilla);
     deep::AttackSetting setting;
     setting.name = cell.attack;
     setting.eps = cell.attack_eps;
     setting.seed = seed;
     setting.quick = command_.quick;
-    setting.file = command_.folder / fmt::format("{}-{}-{}-random{:g}-{}-eps{:g}.attacker", spec.name(),
-                                                 ready.acting.belief, ready.acting.aggregator,
-                                                 ready.acting.random_actions, cell.attack, cell.attack_eps);
+    setting.file = command_.folder / fmt::format("{}-{}-eps{:g}.attacker", ready.name, cell.attack, cell.attack_eps);
     setting.progress = [this, &cell](double share, double) {
       line_.say(fmt::format("{} / {} {:g}: learns, {:.0f} %", cell.cell.agent, cell.cell.attack, cell.attack_eps,
                             100 * share));
       return !stop_.load();
     };
-    ready.attack = deep::make_attack(setting, target);
-    return ready;
+    return {ready.make_agent(), deep::make_attack(setting, {ready.values, vanilla, ready.make_agent})};
   }
 
   std::optional<deep::SeedRun> evaluate_cell(const PlannedCell& cell, std::uint64_t seed, deep::ResultCell& measured) {
     const auto start = std::chrono::steady_clock::now();
-    const Ready ready = prepare(cell, seed);
-    if (!ready.attack) return std::nullopt;
+    const Match match = prepare(cell, seed);
+    if (!match.attack) return std::nullopt;
     const std::uint64_t evaluation_seed = 1000 + seed;
-    const deep::AgentEvaluation e = deep::evaluate_agent(*ready.agent, *ready.attack, ObservationBall(cell.attack_eps),
+    const deep::AgentEvaluation e = deep::evaluate_agent(*match.agent, *match.attack, ObservationBall(cell.attack_eps),
                                                          command_.episodes, evaluation_seed);
     measured.measures = {{"truth in belief", e.truth_in_belief},
                          {"belief area", e.belief_size},
@@ -176,6 +217,7 @@ class TableMaker {
     std::set<std::string> names;
     for (int k = 0; k < command_.seeds; ++k) {
       for (const PlannedCell& cell : plan_) {
+        if (!cell.is_trained()) continue;
         const deep::AgentSpec spec = spec_of(cell, command_.seed(k), command_.effort());
         const fs::path log = command_.folder / (spec.name() + ".csv");
         if (!names.insert(spec.name()).second || !fs::exists(log)) continue;
@@ -194,9 +236,9 @@ class TableMaker {
                          cell.change.belief.empty() && cell.attack_eps > 0.3 && out.size() < 12 &&
                          cell.block != "ablation";
       if (!shown) continue;
-      const Ready ready = prepare(cell, command_.seed(0));
-      if (!ready.attack) continue;
-      deep::EpisodeTrace trace = deep::trace_episode(*ready.agent, *ready.attack, ObservationBall(cell.attack_eps),
+      const Match match = prepare(cell, command_.seed(0));
+      if (!match.attack) continue;
+      deep::EpisodeTrace trace = deep::trace_episode(*match.agent, *match.attack, ObservationBall(cell.attack_eps),
                                                      1000 + command_.seed(0), 3);
       trace.agent = cell.cell.agent;
       trace.attack = cell.cell.attack;
@@ -215,24 +257,31 @@ class TableMaker {
   }
 
   TableCommand command_;
-  std::vector<PlannedCell> plan_;
+  std::vector<PlannedCell> whole_, plan_;
   WorkLine line_;
   const std::atomic<bool>& stop_;
+  std::mutex mutex_;                        ///< of what follows
+  std::map<double, HullControl> controls_;  ///< by radius
 };
 
+std::vector<std::string> kinds_in_tables() {
+  std::vector<std::string> kinds = deep::agent_kinds();
+  kinds.emplace_back("sure");
+  return kinds;
+}
+
 int make_table(const TableCommand& command) {
-  std::vector<PlannedCell> plan = command.kind == "aggregators" ? aggregators_plan() : gridworld_plan();
-  const auto left_out = [](const std::vector<std::string>& left_in, const std::string& name) {
-    return !left_in.empty() && std::find(left_in.begin(), left_in.end(), name) == left_in.end();
+  const std::vector<PlannedCell> whole = command.kind == "aggregators" ? aggregators_plan() : gridworld_plan();
+  const auto listed = [](const std::vector<std::string>& names, const std::string& name) {
+    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
   };
-  std::erase_if(plan, [&](const PlannedCell& c) {
-    return left_out(command.only, c.kind) || left_out(command.attacks, c.attack);
+  TableMaker maker(command, whole, [&](const PlannedCell& c) {
+    return listed(command.only, c.kind) && listed(command.attacks, c.attack);
   });
-  if (plan.empty()) throw InputError("--only, --attacks: no such cell in the table, expected e.g. --only bp-dqn");
   if (command.quick) note("--quick: everything in small, to see that it works; the numbers mean nothing");
   make_folder(command.folder);
   make_folder(command.output);
-  return TableMaker(command, std::move(plan)).run();
+  return maker.run();
 }
 
 }  // namespace
@@ -253,7 +302,7 @@ void add_table(CLI::App& app, Task& task) {
   sub->add_option("--episodes", command->episodes, "Episodes of each cell and seed")
       ->check(whole_number(2, 1'000'000))
       ->capture_default_str();
-  sub->add_option("--only", command->only, "Agents to leave in, e.g. dqn bp-dqn")->check(one_of(deep::agent_kinds()));
+  sub->add_option("--only", command->only, "Agents to leave in, e.g. dqn bp-dqn")->check(one_of(kinds_in_tables()));
   sub->add_option("--attacks", command->attacks, "Attacks to leave in, e.g. none pgd")
       ->check(one_of(deep::attack_names()));
   sub->add_option("--jobs", command->jobs, "Trainings and evaluations side by side")

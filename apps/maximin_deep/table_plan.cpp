@@ -41,6 +41,8 @@ const std::vector<Row>& agents() {
   return rows;
 }
 
+constexpr Row sure_agent{"sure", "Sure agent (exact belief, no network)"};
+
 using Figure = std::optional<deep::PaperFigure>;
 
 /// Means and standard deviations that the paper prints (its tables of the continuous Gridworld), by agent and column.
@@ -151,6 +153,11 @@ std::vector<PlannedCell> gridworld_plan() {
   for (const Row& row : agents()) add_columns(plan, adaptive_block, row, attacks_where(true));
   std::vector<std::string> all{"pgd"};
   for (const std::string& name : attacks_where(true)) all.push_back(name);
+  // Nothing of it can be differentiated.
+  std::vector<std::string> on_sure = attacks_where(true);
+  std::erase(on_sure, "through-defence");
+  add_columns(plan, paper_block, sure_agent, simple);
+  add_columns(plan, adaptive_block, sure_agent, on_sure);
   add_columns(plan, ablation_block, {"bp-dqn", "BP-DQN (exact belief)"}, all);
   add_columns(plan, ablation_block, {"bp-dqn", "maximin only", "ball", "min"}, all);
   add_columns(plan, ablation_block, {"dqn", "belief only", "exact", "mean"}, all);

@@ -13,15 +13,17 @@ namespace maximin::apps {
 struct PlannedCell {
   std::string block;
   deep::ResultCell cell;  ///< titles, the paper's figure, the target; no runs yet
-  std::string kind;       ///< of the agent that is trained, e.g. "bp-dqn"
+  std::string kind;       ///< of the agent that is trained, e.g. "bp-dqn"; or "sure", deep/sure_agent.hpp
   double trained_eps = 0.1;
   std::string config;         ///< JSON that changes the recipe; empty: none
   deep::ActingChange change;  ///< how it acts otherwise than it was trained to
   std::string attack;         ///< name of the attack
   double attack_eps = 0;
+
+  bool is_trained() const { return kind != "sure"; }
 };
 
-/// What is to be trained for a cell.
+/// What is to be trained for a cell of an agent that is.
 deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, const deep::Effort& effort);
 
 /// The paper's table of the continuous Gridworld, its ablation and its noisy environment, each with adaptive attacks

@@ -12,9 +12,9 @@
 namespace maximin::deep {
 namespace {
 
-constexpr long actions = ContinuousGridworld::actions;
+constexpr long action_count = ContinuousGridworld::actions;
 // Whether it has begun, its last action, where the belief's mean and hull lie, the last offset.
-constexpr long mind_features = 1 + actions + 2 + 4 + 2;
+constexpr long mind_features = 1 + action_count + 2 + 4 + 2;
 
 int checked(int grid) {
   if (grid < 2 || grid > 15) throw InputError(fmt::format("adaptive director: grid {}, expected 2 to 15", grid));
@@ -29,7 +29,7 @@ long candidates_of(int grid) {
 
 AdaptiveDirector::AdaptiveDirector(std::shared_ptr<ActionValueModule> judge, const ObservationBall& ball,
                                    const AdaptiveDirectorOptions& options)
-    : Director(ball, options.director, mind_features + candidates_of(options.grid) * (actions + 1),
+    : Director(ball, options.director, mind_features + candidates_of(options.grid) * (action_count + 1),
                candidates_of(options.grid)),
       judge_(std::move(judge)),
       options_(options) {}
@@ -80,7 +80,7 @@ float* AdaptiveDirector::write_mind(Lane lane, Point truth, const GridAgent& age
   const auto put = [&](double v) { *out++ = static_cast<float>(v); };
   const auto put_near = [&](double v) { put(mind.awake ? std::clamp(v * unit, -4.0, 4.0) : 0); };
   put(mind.awake);
-  for (Action a = 0; a < actions; ++a) put(mind.awake && a == mind.last_action);
+  for (Action a = 0; a < action_count; ++a) put(mind.awake && a == mind.last_action);
   put_near(mind.mean.x - truth.x);
   put_near(mind.mean.y - truth.y);
   put_near(mind.hull.x_low - truth.x);
@@ -108,7 +108,7 @@ Situations AdaptiveDirector::look(std::span<const Lane> lanes, std::span<const P
     out = write_mind(lanes[k], truths[k], agent, out);
     for (int c = 0; c < choices(); ++c) {
       out[*answer++] = 1;
-      out += actions;
+      out += action_count;
       *out++ = *harm_at++;
     }
   }

@@ -12,6 +12,8 @@
 #include <maximin/deep/attacks/pa_ad_attack.hpp>
 #include <maximin/deep/attacks/simple_attacks.hpp>
 #include <maximin/deep/attacks/through_defence_attack.hpp>
+#include <maximin/deep/belief_agent.hpp>
+#include <maximin/deep/set_beliefs.hpp>
 #include <maximin/deep/tensor_file.hpp>
 #include <maximin/models/nearest_name.hpp>
 #include <maximin/theory/error.hpp>
@@ -23,11 +25,11 @@ std::shared_ptr<GridAttack> gradient(const AttackSetting& setting, const AttackT
                                      AttackObjective objective) {
   GradientAttackOptions options;
   options.objective = objective;
-  return std::make_shared<GradientAttack>(target.agent->values(), ObservationBall(setting.eps), options);
+  return std::make_shared<GradientAttack>(target.values, ObservationBall(setting.eps), options);
 }
 
 /// Reads the director's file, or teaches it against the agent and writes it. False where it was interrupted.
-bool learn(Director& director, BeliefAgent& victim, const AttackSetting& setting) {
+bool learn(Director& director, GridAgent& victim, const AttackSetting& setting) {
   if (!setting.file.empty() && std::filesystem::exists(setting.file)) {
     try {
       director.load(read_tensor_file(setting.file, "attacker"));
@@ -59,7 +61,6 @@ bool learn(Director& director, BeliefAgent& victim, const AttackSetting& setting
 std::shared_ptr<GridAttack> learned(const AttackSetting& setting, const AttackTarget& target) {
   const ObservationBall ball(setting.eps);
   std::shared_ptr<Director> director;
-  Acting victim = target.acting;
   if (setting.name == "director") {
     AdaptiveDirectorOptions options;
     options.director.seed = setting.seed;
@@ -67,12 +68,14 @@ std::shared_ptr<GridAttack> learned(const AttackSetting& setting, const AttackTa
   } else {
     PaAdOptions options;
     options.director.seed = setting.seed;
-    director = std::make_shared<PaAdAttack>(target.agent->values(), ball, options);
-    // The paper's attacker knows the network and no belief.
-    if (setting.name == "pa-ad") victim = {"observed", 1, "mean", 0};
+    director = std::make_shared<PaAdAttack>(target.values, ball, options);
   }
-  const auto agent = make_agent(*target.agent, victim);
-  return learn(*director, *agent, setting) ? director : nullptr;
+  // The paper's attacker knows the network and no belief.
+  const std::unique_ptr<GridAgent> victim =
+      setting.name == "pa-ad"
+          ? std::make_unique<BeliefAgent>(target.values, std::make_shared<ObservedState>(), MeanAggregator{})
+          : target.twin();
+  return learn(*director, *victim, setting) ? director : nullptr;
 }
 
 }  // namespace

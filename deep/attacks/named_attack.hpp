@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <maximin/deep/agent.hpp>
-#include <maximin/deep/trained_agent.hpp>
+#include <maximin/deep/q_network.hpp>
 
 namespace maximin::deep {
 
@@ -30,10 +30,12 @@ const NamedAttack& attack_named(const std::string& name);
 
 /// Whom an attack is made for.
 struct AttackTarget {
-  const TrainedAgent* agent = nullptr;
-  Acting acting;  ///< how it acts
-  std::shared_ptr<ActionValueModule>
-      judge;  ///< what the adaptive attacks take for the value of an action when s is true
+  /// The network that the paper's attacks differentiate, and know nothing beyond.
+  std::shared_ptr<ActionValueModule> values;
+  /// What the adaptive attacks take for the value of an action when s is true.
+  std::shared_ptr<ActionValueModule> judge;
+  /// A twin of the agent, for learned attacks to learn against.
+  std::function<std::unique_ptr<GridAgent>()> twin;
 };
 
 struct AttackSetting {

@@ -232,7 +232,7 @@ def check_killed_table(program):
     with tempfile.TemporaryDirectory() as folder:
         def command(name):
             where = os.path.join(folder, name)
-            return [program, "table", "gridworld", "--only", "dqn", "--attacks", "none", "random", "pgd", "--frames", "600",
+            return [program, "table", "gridworld", "--only", "dqn", "sure", "--attacks", "none", "random", "pgd", "--frames", "600",
                     "--seeds", "1", "--episodes", "2", "--folder", where, "--output", where]
 
         def table(name):

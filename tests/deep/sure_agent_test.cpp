@@ -15,6 +15,7 @@
 #include <maximin/deep/attacks/offset_attack.hpp>
 #include <maximin/deep/attacks/pa_ad_attack.hpp>
 #include <maximin/deep/attacks/simple_attacks.hpp>
+#include <maximin/deep/evaluation.hpp>
 #include <maximin/deep/runtime.hpp>
 #include <maximin/theory/rollout_in_step.hpp>
 
@@ -132,6 +133,28 @@ TEST(SureAgent, SaysWhatItWouldDo) {
   LeastSureAttack least(ball);
   Forgetful other(control);
   EXPECT_THROW(least.perturb(lanes, truths, other, streams, shown), std::invalid_argument);
+}
+
+TEST(SureAgent, IsEvaluatedAndDrawnAsAnyAgent) {
+  prepare_runtime();
+  const ObservationBall ball(0.5), smaller(0.1);
+  const HullControl control(ball, 2), unprepared(smaller, 2);
+  RandomAttack attack(ball);
+  SureAgent agent(control);
+  const AgentEvaluation evaluation = evaluate_agent(agent, attack, ball, 64, 5);
+  EXPECT_EQ(evaluation.truth_in_belief, 1);
+  EXPECT_GT(evaluation.belief_size, 0);
+  EXPECT_EQ(evaluation.empty_intersections, 0);
+  const EpisodeTrace trace = trace_episode(agent, attack, ball, 5, 1);
+  ASSERT_FALSE(trace.steps.empty());
+  for (const TraceStep& step : trace.steps) {
+    EXPECT_TRUE(std::any_of(step.belief.boxes.begin(), step.belief.boxes.end(),
+                            [&](const Box& box) { return box.contains(step.truth); }));
+  }
+  SureAgent deceived(unprepared);
+  const AgentEvaluation wrong = evaluate_agent(deceived, attack, ball, 64, 5);
+  EXPECT_LT(wrong.truth_in_belief, 1);
+  EXPECT_GT(wrong.empty_intersections, 0);
 }
 
 }  // namespace
