@@ -38,7 +38,7 @@ void train(benchmark::State& state, const std::string& kind) {
   parts.online = agent.q;
   parts.belief = make_belief(acting, spec.eps, agent.particle_filter);
   parts.aggregator = aggregator_named(spec.aggregator);
-  parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values(), *agent.q);
+  parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values_in_rewards(), *agent.q);
   parts.loss = agent.loss;
   Trainer trainer(spec.training, parts);
   trainer.stretch();

@@ -183,7 +183,9 @@ void report_agent(const LatticeWorld& world, const std::filesystem::path& file, 
   fmt::print("{}: belief {}{}, {}{}\n", file.filename().string(), acting.belief,
              acting.belief.starts_with("pf-") ? " (here: exact)" : "", acting.aggregator,
              acting.random_actions > 0 ? ", its random actions left out" : "");
-  const AttackTarget target{values, values, [&] { return make_agent(trained, acting); }};
+  const std::shared_ptr<ActionValueModule> in_rewards = trained.values_in_rewards();
+  const AttackTarget target{in_rewards, in_rewards, "", trained.spec.training.reward_scale,
+                            [&] { return make_agent(trained, acting); }};
   for (const NamedAttack& named : named_attacks()) {
     if (named.learned ? settings.learned == "no" : !settings.attacks && named.name != "none") continue;
     if (named.name == "through-defence") continue;  // differentiates what the agent goes by, off the lattice

@@ -66,6 +66,7 @@ void visit_fields(AgentSpec& o, Visitor& visit) {
   visit("network", o.network);
   visit("loss", o.loss);
   visit("belief", o.belief);
+  visit("belief_trajectories", o.belief_trajectories);
   visit("belief_states", o.belief_states);
   visit("training_belief_states", o.training_belief_states);
   visit("aggregator", o.aggregator);
@@ -194,7 +195,7 @@ void check(const AgentSpec& s, const std::string& where) {
   require_file_name(s.kind, where + ": kind");
   if (!s.start_from.empty()) require_word(s.start_from, agent_kinds(), where + ": start_from");
   require_word(s.loss, {"td", "sa", "wocar", "radial", "car"}, where + ": loss");
-  require_word(s.belief, {"observed", "ball", "exact", "pf-lstm", "pf-gru"}, where + ": belief");
+  require_word(s.belief, belief_names(), where + ": belief");
   require_word(s.target_order, {"max-of-aggregate", "aggregate-of-max"}, where + ": target_order");
   require_word(s.train_attack, {"none", "random", "pgd", "min-best", "mixed"}, where + ": train_attack");
   const auto within = [&](const char* name, double value, double low, double high) {
@@ -202,6 +203,7 @@ void check(const AgentSpec& s, const std::string& where) {
     throw InputError(fmt::format("{}: {}: {}, expected {} to {}", where, name, value, low, high));
   };
   within("eps", s.eps, 0, 5);
+  within("belief_trajectories", static_cast<double>(s.belief_trajectories), 0, 1e9);
   within("belief_states", static_cast<double>(s.belief_states), 1, 4096);
   within("training_belief_states", static_cast<double>(s.training_belief_states), 1, 4096);
   within("discount", s.discount, 0, 1);
@@ -222,6 +224,12 @@ void check(const AgentSpec& s, const std::string& where) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& belief_names() {
+  static const std::vector<std::string> names{"observed",  "ball",       "exact",        "pf-lstm",    "pf-gru",
+                                              "ball-mean", "exact-mean", "pf-lstm-mean", "pf-gru-mean"};
+  return names;
+}
 
 std::string AgentSpec::name() const {
   if (!knows_eps()) return fmt::format("{}-seed{}", kind, training.seed);

@@ -20,7 +20,8 @@ struct AgentSpec {
   double eps = 0.1;          ///< radius of the ball that it is trained to withstand and believes in
   QNetworkShape network;
   std::string loss = "td";          ///< td, sa, wocar, radial, car
-  std::string belief = "observed";  ///< observed, ball, exact, pf-lstm, pf-gru
+  std::string belief = "observed";  ///< observed; or ball, exact, pf-lstm, pf-gru, and X-mean, the mean of X alone
+  long belief_trajectories = 0;     ///< of clean play, all that a particle filter is taught; 0: as many as it takes
   long belief_states = 1;           ///< K of set beliefs when acting
   long training_belief_states = 1;  ///< and in the replay memory
   std::string aggregator = "mean";  ///< min, mean, soft-min:BETA, cvar:ALPHA
@@ -39,6 +40,9 @@ struct AgentSpec {
   /// Whether eps has a part in it.
   bool knows_eps() const { return belief != "observed" || loss != "td" || train_attack != "none"; }
 };
+
+/// Names of beliefs.
+const std::vector<std::string>& belief_names();
 
 /// Kinds that `recipe` knows.
 const std::vector<std::string>& agent_kinds();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <torch/torch.h>
@@ -29,6 +30,18 @@ class ActionValueModule : public torch::nn::Module {
  public:
   /// Q(s, .) of each row, [n, state...] -> [n, actions].
   virtual torch::Tensor forward(const torch::Tensor& states) = 0;
+};
+
+/// The values of another module in another unit: divided by `unit`.
+class RescaledValues final : public ActionValueModule {
+ public:
+  RescaledValues(std::shared_ptr<ActionValueModule> values, double unit)
+      : values_(register_module("values", std::move(values))), unit_(unit) {}
+  torch::Tensor forward(const torch::Tensor& states) override { return values_->forward(states) / unit_; }
+
+ private:
+  std::shared_ptr<ActionValueModule> values_;
+  double unit_;
 };
 
 /// Action values by a fully connected ReLU network: [n, inputs] -> [n, actions].

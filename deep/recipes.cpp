@@ -68,7 +68,15 @@ AgentSpec full_recipe(std::string_view kind, std::uint64_t seed) {
   if (kind == "bp-dqn") return belief_pessimistic(seed, "exact");
   if (kind == "bp-dqn-lstm") return belief_pessimistic(seed, "pf-lstm");
   if (kind == "bp-dqn-gru") return belief_pessimistic(seed, "pf-gru");
+  if (kind == "bp-dqn-printed") {
+    AgentSpec printed = belief_pessimistic(seed, "pf-lstm");
+    printed.aggregator = "min";
+    printed.random_actions = 0;
+    printed.train_attack = "pgd";
+    return printed;
+  }
   AgentSpec noisy = belief_pessimistic(seed, "pf-lstm");  // "bp-dqn-noisy"
+  noisy.belief_trajectories = 30;
   noisy.start_from.clear();
   noisy.training = vanilla(seed).training;
   noisy.train_attack = "pgd";
@@ -90,8 +98,8 @@ void shorten(TrainOptions& o, long frames) {
 }  // namespace
 
 const std::vector<std::string>& agent_kinds() {
-  static const std::vector<std::string> kinds{"dqn",    "sa-dqn",      "wocar-dqn",  "radial-dqn",  "car-dqn",
-                                              "bp-dqn", "bp-dqn-lstm", "bp-dqn-gru", "bp-dqn-noisy"};
+  static const std::vector<std::string> kinds{"dqn",    "sa-dqn",      "wocar-dqn",  "radial-dqn",     "car-dqn",
+                                              "bp-dqn", "bp-dqn-lstm", "bp-dqn-gru", "bp-dqn-printed", "bp-dqn-noisy"};
   return kinds;
 }
 

@@ -11,6 +11,7 @@
 #include <maximin/deep/pf_rnn_training.hpp>
 #include <maximin/deep/tensor_file.hpp>
 #include <maximin/deep/trained_agent.hpp>
+#include <maximin/models/files/file_lock.hpp>
 #include <maximin/models/files/output_file.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -42,10 +43,11 @@ std::optional<TrainedAgent> finished(const AgentSpec& spec, const fs::path& path
 /// follows keeps it in its checkpoints. False where the hook stopped it.
 bool train_particle_filter(TrainedAgent& agent, bool quick, const TrainingHooks& hooks) {
   PfRnnOptions shape;
-  shape.cell = agent.spec.belief == "pf-gru" ? PfCell::gru : PfCell::lstm;
+  shape.cell = agent.spec.belief.starts_with("pf-gru") ? PfCell::gru : PfCell::lstm;
   shape.eps = agent.spec.eps;
   PfTrainingOptions options;
   options.seed = agent.spec.training.seed;
+  options.trajectories = agent.spec.belief_trajectories;
   if (quick) options.updates = 200;
   const Stopwatch watch;
   Stream weights(options.seed, (std::uint64_t{1} << 62U) + 2);
@@ -151,6 +153,7 @@ std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& f
     return done;
   }
   make_folder(folder);
+  const FileLock one_at_a_time(files.agent);
   TrainedAgent agent = untrained(spec);
   const auto checkpoint = read_checkpoint(files.checkpoint, agent);
   if (!prepare(agent, folder, device, effort, hooks)) return std::nullopt;
@@ -161,7 +164,7 @@ std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& f
   acting.belief_states = spec.training_belief_states;
   parts.belief = make_belief(acting, spec.eps, agent.particle_filter);
   parts.aggregator = aggregator_named(spec.aggregator);
-  parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values(), *agent.q);
+  parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values_in_rewards(), *agent.q);
   parts.loss = agent.loss;
   parts.device = device;
   Trainer trainer(spec.training, parts);

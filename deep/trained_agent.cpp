@@ -1,15 +1,18 @@
 #include <maximin/deep/trained_agent.hpp>
 
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <maximin/deep/losses/car_loss.hpp>
 #include <maximin/deep/losses/radial_loss.hpp>
 #include <maximin/deep/losses/sa_loss.hpp>
 #include <maximin/deep/losses/td_loss.hpp>
 #include <maximin/deep/losses/wocar_loss.hpp>
+#include <maximin/deep/mean_state.hpp>
 #include <maximin/deep/pf_rnn_belief.hpp>
 #include <maximin/deep/pf_rnn_file.hpp>
 #include <maximin/deep/report/json_fields.hpp>
@@ -87,6 +90,11 @@ Acting acting_of(const AgentSpec& spec, const ActingChange& change) {
 }
 
 std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const PfRnnPtr& particle_filter) {
+  if (acting.belief.ends_with("-mean")) {
+    Acting whole = acting;
+    whole.belief.resize(whole.belief.size() - std::string_view("-mean").size());
+    return std::make_shared<MeanState>(make_belief(whole, eps, particle_filter));
+  }
   const ObservationBall ball(eps);
   if (acting.belief == "observed") return std::make_shared<ObservedState>();
   if (acting.belief == "ball") return std::make_shared<SetBeliefs>(SetBelief::ball, ball, acting.belief_states);
@@ -99,6 +107,20 @@ std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const 
 std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Acting& acting) {
   return std::make_unique<BeliefAgent>(trained.values(), make_belief(acting, trained.spec.eps, trained.particle_filter),
                                        aggregator_named(acting.aggregator), acting.random_actions);
+}
+
+std::string identity_of(const TrainedAgent& trained, const Acting& acting) {
+  uLong sum = crc32(0, nullptr, 0);
+  const auto add = [&](const torch::nn::Module& module) {
+    for (const torch::Tensor& tensor : module.parameters()) {
+      const std::string bytes = bytes_of_tensor(tensor);
+      sum = crc32(sum, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
+    }
+  };
+  add(*trained.values());
+  if (trained.particle_filter) add(*trained.particle_filter);
+  return fmt::format("{} {:08x}, {} of {}, random {:g}", trained.spec.name(), sum, acting.aggregator, acting.belief,
+                     acting.random_actions);
 }
 
 TrainedAgent untrained(const AgentSpec& spec) {

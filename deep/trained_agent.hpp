@@ -23,8 +23,12 @@ struct TrainedAgent {
   double training_seconds = 0;  ///< of this part of the pipeline
   double belief_seconds = 0;    ///< of the particle filter's training
 
-  /// What it acts by, and what attacks differentiate: in units of training rewards, reward_scale times rewards.
+  /// What it acts by: in units of training rewards, reward_scale times rewards.
   std::shared_ptr<ActionValueModule> values() const { return loss->acting(q); }
+  /// What attacks differentiate: the same in rewards, for what a softmax of values does depends on their unit.
+  std::shared_ptr<ActionValueModule> values_in_rewards() const {
+    return std::make_shared<RescaledValues>(values(), spec.training.reward_scale);
+  }
 };
 
 /// How to act.
@@ -49,6 +53,9 @@ std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const 
 
 /// An agent out of its parts, for episodes in step.
 std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Acting& acting);
+
+/// Tells the agent, as it acts, from others: name, how it acts, a checksum of all weights.
+std::string identity_of(const TrainedAgent& trained, const Acting& acting);
 
 /// Networks before training.
 TrainedAgent untrained(const AgentSpec& spec);
@@ -78,7 +85,8 @@ std::vector<std::optional<double>> training_row(const CurvePoint& point);
 /// NAME.training the checkpoint of a training under way, which a later call continues bit for bit. What the agent
 /// begins with (a vanilla DQN of the same seed, a particle filter) is trained first where it is not there. Returns the
 /// agent, from its file where it is there already; nothing where a hook stopped it. `effort` is that of what comes
-/// first; the agent's own is in its specification. Throws InputError when a file there is of another specification.
+/// first; the agent's own is in its specification. Throws InputError when a file there is of another specification, and
+/// when another run is training the same agent there.
 std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const std::filesystem::path& folder,
                                         torch::Device device, const Effort& effort, const TrainingHooks& hooks);
 

@@ -13,7 +13,7 @@
 namespace maximin {
 namespace {
 
-struct Cell {
+struct MapCell {
   int x, y;
   char kind;
 };
@@ -22,12 +22,12 @@ constexpr std::array<std::pair<int, int>, 4> moves{{{0, 1}, {1, 0}, {0, -1}, {-1
 
 /// The cells of the map and which state each of them is.
 struct Map {
-  std::vector<Cell> cells;  ///< that are no wall, in order of the states
+  std::vector<MapCell> cells;  ///< that are no wall, in order of the states
   int width = 0, height = 0;
   std::vector<State> state_at;  ///< [y * width + x], -1 for a wall
 
   State after(State s, Action a) const {
-    const Cell& from = cells[static_cast<std::size_t>(s)];
+    const MapCell& from = cells[static_cast<std::size_t>(s)];
     const auto [dx, dy] = moves[static_cast<std::size_t>(a)];
     const int x = from.x + dx, y = from.y + dy;
     if (x < 0 || x >= width || y < 0 || y >= height) return s;
@@ -75,7 +75,7 @@ void check(const GridWorldOptions& o) {
   }
 }
 
-double entry_reward(const Cell& cell, const GridWorldOptions& o) {
+double entry_reward(const MapCell& cell, const GridWorldOptions& o) {
   return cell.kind == 'G' ? o.goal : cell.kind == 'T' ? o.trap : o.step;
 }
 
@@ -109,7 +109,7 @@ std::vector<double> start_of(const Map& map) {
   const auto uniform_over = [&](const char* kinds) {
     std::vector<double> start;
     double count = 0;
-    for (const Cell& cell : map.cells) {
+    for (const MapCell& cell : map.cells) {
       start.push_back(std::string(kinds).find(cell.kind) != std::string::npos ? 1 : 0);
       count += start.back();
     }
@@ -132,7 +132,7 @@ Model<double> grid_world(const std::vector<std::string>& rows, const GridWorldOp
   model.geometry.kind = Geometry<double>::Kind::points;
   model.geometry.points.resize(static_cast<Eigen::Index>(map.cells.size()), 2);
   for (std::size_t s = 0; s < map.cells.size(); ++s) {
-    const Cell& cell = map.cells[s];
+    const MapCell& cell = map.cells[s];
     model.geometry.points.row(static_cast<Eigen::Index>(s)) << cell.x, cell.y;
     model.state_names.push_back(cell.kind == 'G'   ? fmt::format("goal-{}-{}", cell.x, cell.y)
                                 : cell.kind == 'T' ? fmt::format("trap-{}-{}", cell.x, cell.y)

@@ -14,8 +14,9 @@ void add_attack_options(CLI::App& sub, AttackedAgent& o) {
       "--judge", o.judge,
       "Agent file whose values adaptive attacks go by; unless given, the vanilla agent of the same seed beside "
       "the file, else the agent itself");
-  sub.add_option("--belief", o.change.belief, "In place of the agent's own: observed, ball, exact, pf-lstm, pf-gru")
-      ->check(one_of({"observed", "ball", "exact", "pf-lstm", "pf-gru"}));
+  sub.add_option("--belief", o.change.belief,
+                 "In place of the agent's own: observed, ball, exact, pf-lstm, pf-gru; X-mean: the mean of X")
+      ->check(one_of(deep::belief_names()));
   sub.add_option("--aggregator", o.change.aggregator, "In place of its own: min, mean, soft-min:BETA, cvar:ALPHA");
   sub.add_option("--random-actions", o.change.random_actions, "Share of random actions, in place of its own")
       ->check(real_number({.low = 0, .high = 1}));
@@ -33,13 +34,14 @@ Match prepare_match(const AttackedAgent& o) {
   if (!spec.knows_eps()) spec.eps = match.eps;
   match.acting = deep::acting_of(spec, o.change);
   match.agent = deep::make_agent(*match.trained, match.acting);
-  const std::shared_ptr<deep::ActionValueModule> values = match.trained->values();
-  deep::AttackTarget target{values, values, [&] { return deep::make_agent(*match.trained, match.acting); }};
+  const std::shared_ptr<deep::ActionValueModule> values = match.trained->values_in_rewards();
+  deep::AttackTarget target{values, values, deep::identity_of(*match.trained, match.acting), spec.training.reward_scale,
+                            [&] { return deep::make_agent(*match.trained, match.acting); }};
   const std::filesystem::path vanilla = o.file.parent_path() / fmt::format("dqn-seed{}.agent", spec.training.seed);
   if (!o.judge.empty()) {
-    target.judge = deep::read_agent(o.judge).values();
+    target.judge = deep::read_agent(o.judge).values_in_rewards();
   } else if (std::filesystem::exists(vanilla)) {
-    target.judge = deep::read_agent(vanilla).values();
+    target.judge = deep::read_agent(vanilla).values_in_rewards();
   }
   deep::AttackSetting setting;
   setting.name = o.attack;

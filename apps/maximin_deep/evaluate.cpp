@@ -30,6 +30,18 @@ double share(long part, long whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
+const char* words_of(deep::Knowledge knowledge) {
+  switch (knowledge) {
+    case deep::Knowledge::truth:
+      return "looks at the truth alone";
+    case deep::Knowledge::network:
+      return "knows the network, not of beliefs";
+    case deep::Knowledge::defence:
+      break;
+  }
+  return "knows the whole defence";
+}
+
 int evaluate(const EvaluateCommand& command) {
   Table table;
   table.column("agent", Align::left).column("attack", Align::left).column("eps", Align::point);
@@ -100,9 +112,7 @@ void add_evaluate(CLI::App& app, Task& task) {
   sub->add_flag("--json", command->json, "Print the result as JSON");
   std::string listing = "Attacks:\n";
   for (const auto& a : deep::named_attacks()) {
-    listing +=
-        fmt::format("  {:16} {}{}\n", a.name, a.adaptive ? "knows the whole defence" : "does not know of beliefs",
-                    a.learned ? ", learned" : "");
+    listing += fmt::format("  {:16} {}{}\n", a.name, words_of(a.knows), a.learned ? ", learned" : "");
   }
   sub->footer(listing +
               "Examples:\n"

@@ -20,6 +20,7 @@
 #include <maximin/apps/maximin_deep/commands.hpp>
 #include <maximin/apps/maximin_deep/table_plan.hpp>
 #include <maximin/apps/maximin_deep/workers.hpp>
+#include <maximin/deep/attacks/director_training.hpp>
 #include <maximin/deep/attacks/named_attack.hpp>
 #include <maximin/deep/evaluation.hpp>
 #include <maximin/deep/report/results_file.hpp>
@@ -74,6 +75,10 @@ class TableMaker {
   }
 
  private:
+  /// Of the vanilla agent by whose values attacks on the whole defence go: none that a training began with or was
+  /// attacked by.
+  static std::uint64_t judge_seed(std::uint64_t seed) { return 1'000'000 + seed; }
+
   /// Its radius is never asked for.
   deep::AgentSpec vanilla_spec(std::uint64_t seed) const { return deep::recipe("dqn", 0, seed, command_.effort()); }
 
@@ -91,6 +96,7 @@ class TableMaker {
     if (!command_.attacks.empty()) table.command += fmt::format(" --attacks {}", fmt::join(command_.attacks, " "));
     table.configuration["episodes"] = command_.episodes;
     table.configuration["quick"] = command_.quick;
+    table.configuration["director_frames"] = deep::DirectorTraining().frames;
     if (command_.frames > 0) table.configuration["frames"] = command_.frames;
     // Of the whole table, whatever is left in: its parts may be made one by one.
     std::set<std::string> names;
@@ -101,7 +107,7 @@ class TableMaker {
     }
     for (const PlannedCell& cell : plan_) {
       deep::ResultBlock* block = table.find(cell.block);
-      if (!block) block = &table.blocks.emplace_back(deep::ResultBlock{cell.block, "", {}});
+      if (!block) block = &table.blocks.emplace_back(deep::ResultBlock{cell.block, block_note(cell.block), {}});
       block->cells.push_back(cell.cell);
     }
     return table;
@@ -112,9 +118,13 @@ class TableMaker {
     std::vector<deep::AgentSpec> specs;
     for (int k = 0; k < command_.seeds; ++k) {
       for (const PlannedCell& cell : plan_) {
-        if (cell.is_trained()) specs.push_back(spec_of(cell, command_.seed(k), command_.effort()));
+        if (!cell.is_trained()) continue;
+        specs.push_back(spec_of(cell, command_.seed(k), command_.effort()));
+        if (cell.filter_of.empty()) continue;
+        specs.push_back(deep::recipe(cell.filter_of, cell.trained_eps, command_.seed(k), command_.effort()));
       }
       specs.push_back(vanilla_spec(command_.seed(k)));
+      specs.push_back(vanilla_spec(judge_seed(command_.seed(k))));
     }
     train_side_by_side(std::move(specs), command_.folder, torch::kCPU, command_.effort(), command_.jobs, line_, stop_);
   }
@@ -149,6 +159,8 @@ class TableMaker {
     std::function<std::unique_ptr<deep::GridAgent>()> make_agent;
     std::string name;  ///< that tells it from any other agent of the table
     std::shared_ptr<deep::ActionValueModule> values;
+    std::string identity;
+    double unit = 1;  ///< what one reward is in the values that the agent goes by
   };
 
   Ready ready_to_act(const PlannedCell& cell, std::uint64_t seed,
@@ -156,16 +168,21 @@ class TableMaker {
     if (!cell.is_trained()) {
       const HullControl& control = sure_control(cell.trained_eps);
       return {[&control] { return std::make_unique<deep::SureAgent>(control); },
-              fmt::format("sure-eps{:g}-seed{}", cell.trained_eps, seed), vanilla};
+              fmt::format("sure-eps{:g}-seed{}", cell.trained_eps, seed), vanilla,
+              fmt::format("sure {:g}", cell.trained_eps), 1};
     }
     const deep::AgentSpec spec = spec_of(cell, seed, command_.effort());
     auto trained = std::make_shared<deep::TrainedAgent>(deep::read_agent(agent_file(spec)));
     const deep::Acting acting = deep::acting_of(spec, cell.change);
-    // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
-    if (!spec.knows_eps()) trained->spec.eps = cell.attack_eps;
+    // A vanilla agent has no radius of its own: its belief, if it is given one, is of the cell's.
+    if (!spec.knows_eps()) trained->spec.eps = cell.trained_eps;
+    if (!cell.filter_of.empty()) {
+      const deep::AgentSpec other = deep::recipe(cell.filter_of, cell.trained_eps, seed, command_.effort());
+      trained->particle_filter = deep::read_agent(agent_file(other)).particle_filter;
+    }
     return {[trained, acting] { return deep::make_agent(*trained, acting); },
             fmt::format("{}-{}-{}-random{:g}", spec.name(), acting.belief, acting.aggregator, acting.random_actions),
-            trained->values()};
+            trained->values_in_rewards(), deep::identity_of(*trained, acting), spec.training.reward_scale};
   }
 
   /// Solved once for each radius; 4 squares to a move take a second, at either.
@@ -182,8 +199,8 @@ class TableMaker {
   };
 
   Match prepare(const PlannedCell& cell, std::uint64_t seed) {
-    const auto vanilla = deep::read_agent(agent_file(vanilla_spec(seed))).values();
-    const Ready ready = ready_to_act(cell, seed, vanilla);
+    const auto vanilla = [&](std::uint64_t of) { return deep::read_agent(agent_file(vanilla_spec(of))); };
+    const Ready ready = ready_to_act(cell, seed, vanilla(seed).values_in_rewards());
     deep::AttackSetting setting;
     setting.name = cell.attack;
     setting.eps = cell.attack_eps;
@@ -195,7 +212,8 @@ class TableMaker {
                             100 * share));
       return !stop_.load();
     };
-    return {ready.make_agent(), deep::make_attack(setting, {ready.values, vanilla, ready.make_agent})};
+    return {ready.make_agent(), deep::make_attack(setting, {ready.values, vanilla(judge_seed(seed)).values_in_rewards(),
+                                                            ready.identity, ready.unit, ready.make_agent})};
   }
 
   std::optional<deep::SeedRun> evaluate_cell(const PlannedCell& cell, std::uint64_t seed, deep::ResultCell& measured) {
@@ -232,9 +250,9 @@ class TableMaker {
   std::vector<deep::EpisodeTrace> traces() {
     std::vector<deep::EpisodeTrace> out;
     for (const PlannedCell& cell : plan_) {
-      const bool shown = (cell.kind == "bp-dqn" || cell.kind == "dqn" || cell.kind == "bp-dqn-lstm") &&
-                         cell.change.belief.empty() && cell.attack_eps > 0.3 && out.size() < 12 &&
-                         cell.block != "ablation";
+      const bool shown =
+          (cell.kind == "bp-dqn" || cell.kind == "dqn" || cell.kind == "bp-dqn-printed" || cell.kind == "sure") &&
+          cell.change.belief.empty() && cell.attack_eps > 0.3 && out.size() < 12 && cell.block != "ablation";
       if (!shown) continue;
       const Match match = prepare(cell, command_.seed(0));
       if (!match.attack) continue;
@@ -276,7 +294,8 @@ int make_table(const TableCommand& command) {
     return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
   };
   TableMaker maker(command, whole, [&](const PlannedCell& c) {
-    return listed(command.only, c.kind) && listed(command.attacks, c.attack);
+    const bool whole_agent = c.filter_of.empty() || listed(command.only, c.filter_of);
+    return listed(command.only, c.kind) && listed(command.attacks, c.attack) && whole_agent;
   });
   if (command.quick) note("--quick: everything in small, to see that it works; the numbers mean nothing");
   make_folder(command.folder);

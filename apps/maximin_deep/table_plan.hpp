@@ -15,6 +15,7 @@ struct PlannedCell {
   deep::ResultCell cell;  ///< titles, the paper's figure, the target; no runs yet
   std::string kind;       ///< of the agent that is trained, e.g. "bp-dqn"; or "sure", deep/sure_agent.hpp
   double trained_eps = 0.1;
+  std::string filter_of;      ///< kind of agent whose particle filter it takes; empty: it has its own or none
   std::string config;         ///< JSON that changes the recipe; empty: none
   deep::ActingChange change;  ///< how it acts otherwise than it was trained to
   std::string attack;         ///< name of the attack
@@ -26,13 +27,16 @@ struct PlannedCell {
 /// What is to be trained for a cell of an agent that is.
 deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, const deep::Effort& effort);
 
-/// The paper's table of the continuous Gridworld, its ablation and its noisy environment, each with adaptive attacks
-/// beside; and, to choose BP-DQN's aggregator before that table is seen, `aggregators`, on other seeds.
+/// The paper's table of the continuous Gridworld, its ablation and its noisy environment, each with attacks beside that
+/// the paper did not try; and, to choose BP-DQN's aggregator before that table is seen, `aggregators`, on other seeds.
 std::vector<PlannedCell> gridworld_plan();
 std::vector<PlannedCell> aggregators_plan();
 
-/// Cells that follow from others: for every agent and radius the adaptive attack that left it least. Replaces the block
-/// of that name.
+/// What stands above a block: how its agents were trained, what its attacks know.
+std::string block_note(const std::string& block);
+
+/// Cells that follow from others: for every agent and radius the attack of the block of further attacks that left it
+/// least. Replaces the block of that name.
 void add_strongest(deep::ResultTable& table);
 
 }  // namespace maximin::apps

@@ -25,26 +25,47 @@ std::shared_ptr<GridAttack> gradient(const AttackSetting& setting, const AttackT
                                      AttackObjective objective) {
   GradientAttackOptions options;
   options.objective = objective;
+  if (setting.name == "pgd-released") {
+    options.released_start = true;
+    options.keep_best = false;
+  }
   return std::make_shared<GradientAttack>(target.values, ObservationBall(setting.eps), options);
 }
 
+/// What a director's file says of its training, beside what the director says of itself.
+void take_training(nlohmann::ordered_json& about, const std::string& identity, long frames) {
+  const auto expect = [&](const char* what, const nlohmann::ordered_json& expected) {
+    const nlohmann::ordered_json found = about.contains(what) ? about[what] : nlohmann::ordered_json();
+    about.erase(what);
+    if (found == expected) return;
+    throw InputError(
+        fmt::format("{} is {}, expected {}: an attacker learns against one agent; remove the file, or name "
+                    "another",
+                    what, found.dump(), expected.dump()));
+  };
+  expect("learned_against", identity);
+  expect("frames", frames);
+}
+
 /// Reads the director's file, or teaches it against the agent and writes it. False where it was interrupted.
-bool learn(Director& director, GridAgent& victim, const AttackSetting& setting) {
-  if (!setting.file.empty() && std::filesystem::exists(setting.file)) {
-    try {
-      director.load(read_tensor_file(setting.file, "attacker"));
-    } catch (const InputError& e) {
-      const std::string what = e.what(), file = setting.file.string();
-      throw InputError(what.starts_with(file) ? what : fmt::format("{}: {}", file, what));
-    }
-    return true;
-  }
+bool learn(Director& director, GridAgent& victim, const AttackSetting& setting, const std::string& identity) {
   DirectorTraining training;
   training.seed = setting.seed;
   if (setting.quick) {
     training.frames = 10'000;
     training.stretch_frames = 5'000;
     training.evaluation_episodes = 32;
+  }
+  if (!setting.file.empty() && std::filesystem::exists(setting.file)) {
+    try {
+      TensorFile file = read_tensor_file(setting.file, "attacker");
+      take_training(file.about, identity, training.frames);
+      director.load(file);
+    } catch (const InputError& e) {
+      const std::string what = e.what(), file = setting.file.string();
+      throw InputError(what.starts_with(file) ? what : fmt::format("{}: {}", file, what));
+    }
+    return true;
   }
   bool stopped = false;
   train_director(director, victim, ContinuousGridworld(), training, [&](const DirectorPoint& point) {
@@ -54,7 +75,11 @@ bool learn(Director& director, GridAgent& victim, const AttackSetting& setting) 
   });
   if (stopped) return false;
   // Whoever plays with it plays as its file would have it.
-  if (!setting.file.empty()) write_tensor_file(setting.file, director.save());
+  if (setting.file.empty()) return true;
+  TensorFile file = director.save();
+  file.about["learned_against"] = identity;
+  file.about["frames"] = training.frames;
+  write_tensor_file(setting.file, file);
   return true;
 }
 
@@ -75,24 +100,24 @@ std::shared_ptr<GridAttack> learned(const AttackSetting& setting, const AttackTa
       setting.name == "pa-ad"
           ? std::make_unique<BeliefAgent>(target.values, std::make_shared<ObservedState>(), MeanAggregator{})
           : target.twin();
-  return learn(*director, *victim, setting) ? director : nullptr;
+  return learn(*director, *victim, setting, target.identity) ? director : nullptr;
 }
 
 }  // namespace
 
 const std::vector<NamedAttack>& named_attacks() {
   static const std::vector<NamedAttack> attacks{
-      {"none", "natural", false, false},
-      {"random", "random", false, false},
-      {"constant-offset", "constant offset", true, false},
-      {"pgd", "PGD", false, false},
-      {"pgd-released", "PGD, cross-entropy", false, false},
-      {"min-best", "MinBest", false, false},
-      {"pa-ad", "PA-AD", false, true},
-      {"best-response", "best response", true, false},
-      {"through-defence", "descent through the defence", true, false},
-      {"pa-ad-adaptive", "PA-AD against the whole defence", true, true},
-      {"director", "director against the whole defence", true, true},
+      {"none", "natural", Knowledge::truth, false, true},
+      {"random", "random", Knowledge::truth},
+      {"constant-offset", "constant offset", Knowledge::truth},
+      {"pgd", "PGD", Knowledge::network, false, true},
+      {"pgd-released", "PGD as released", Knowledge::network},
+      {"min-best", "MinBest", Knowledge::network, false, true},
+      {"pa-ad", "PA-AD", Knowledge::network, true, true},
+      {"best-response", "best response", Knowledge::defence},
+      {"through-defence", "descent through the defence", Knowledge::defence},
+      {"pa-ad-adaptive", "PA-AD against the whole defence", Knowledge::defence, true},
+      {"director", "director against the whole defence", Knowledge::defence, true},
   };
   return attacks;
 }
@@ -120,7 +145,11 @@ std::shared_ptr<GridAttack> make_attack(const AttackSetting& setting, const Atta
   if (name == "pgd-released") return gradient(setting, target, AttackObjective::cross_entropy);
   if (name == "min-best") return gradient(setting, target, AttackObjective::min_best);
   if (name == "best-response") return std::make_shared<BestResponseAttack>(target.judge, ball, BestResponseOptions{});
-  if (name == "through-defence") return std::make_shared<ThroughDefenceAttack>(target.judge, ball);
+  if (name == "through-defence") {
+    ThroughDefenceOptions options;
+    options.unit = target.unit;
+    return std::make_shared<ThroughDefenceAttack>(target.judge, ball, options);
+  }
   return learned(setting, target);
 }
 

@@ -12,12 +12,16 @@
 
 namespace maximin::deep {
 
+/// What an attack goes by, weakest first: the true state alone; the network too; belief and aggregator and all.
+enum class Knowledge { truth, network, defence };
+
 /// An attack by its name on the command line.
 struct NamedAttack {
   std::string name;
-  std::string title;      ///< in tables
-  bool adaptive = false;  ///< made against the whole defence, belief and aggregator and all
+  std::string title;  ///< in tables
+  Knowledge knows = Knowledge::truth;
   bool learned = false;   ///< is trained, for minutes, against one agent
+  bool in_paper = false;  ///< a column of the paper's table
 };
 
 /// All of them, weakest knowledge first.
@@ -30,10 +34,14 @@ const NamedAttack& attack_named(const std::string& name);
 
 /// Whom an attack is made for.
 struct AttackTarget {
-  /// The network that the paper's attacks differentiate, and know nothing beyond.
+  /// The network that the paper's attacks differentiate, and know nothing beyond; in rewards, as the judge.
   std::shared_ptr<ActionValueModule> values;
   /// What the adaptive attacks take for the value of an action when s is true.
   std::shared_ptr<ActionValueModule> judge;
+  /// Tells the agent, its weights and its judge from all others: a learned attack is one agent's.
+  std::string identity;
+  /// What one reward is in the values that the agent goes by.
+  double unit = 1;
   /// A twin of the agent, for learned attacks to learn against.
   std::function<std::unique_ptr<GridAgent>()> twin;
 };

@@ -14,13 +14,14 @@ namespace {
 class Descents {
  public:
   Descents(const BeliefAgent& agent, const ObservationBall& ball, std::vector<Lane> lanes, std::vector<Point> truths,
-           torch::Tensor judged)
+           torch::Tensor judged, double unit)
       : agent_(agent),
         ball_(ball),
         bounds_(truths, ball),
         lanes_(std::move(lanes)),
         truths_(std::move(truths)),
-        judged_(std::move(judged)) {
+        judged_(std::move(judged)),
+        unit_(unit) {
     const auto rows = static_cast<long>(lanes_.size());
     best_ = torch::zeros({rows, 2});
     hard_ = torch::full({rows}, std::numeric_limits<float>::infinity());
@@ -33,7 +34,7 @@ class Descents {
     std::vector<Point> places = to_points(bounds_.clamp(wanted));
     for (std::size_t k = 0; k < places.size(); ++k) places[k] = ball_.project(truths_[k], places[k]);
     const torch::Tensor values = agent_.would_value(lanes_, places).to(torch::kCPU).clone();
-    const torch::Tensor soft = (torch::softmax(values, 1) * judged_).sum(1);
+    const torch::Tensor soft = (torch::softmax(values / unit_, 1) * judged_).sum(1);
     const torch::Tensor hard = judged_.gather(1, values.argmax(1, true)).squeeze(1);
     const torch::Tensor better = (hard < hard_) | ((hard == hard_) & (soft < soft_));
     best_ = torch::where(better.unsqueeze(1), to_tensor(places), best_);
@@ -64,6 +65,7 @@ class Descents {
   std::vector<Lane> lanes_;
   std::vector<Point> truths_;
   torch::Tensor judged_, best_, hard_, soft_;
+  double unit_;
 };
 
 }  // namespace
@@ -71,8 +73,9 @@ class Descents {
 ThroughDefenceAttack::ThroughDefenceAttack(std::shared_ptr<ActionValueModule> judge, const ObservationBall& ball,
                                            const ThroughDefenceOptions& options)
     : judge_(std::move(judge)), ball_(ball), options_(options) {
-  if (options.steps < 0 || options.starts < 1 || !(options.step_share > 0) || !(options.probe_share > 0)) {
-    throw InputError("through defence: steps below 0, or no starts, or no step, expected e.g. 10 steps of 0.1");
+  if (options.steps < 0 || options.starts < 1 || !(options.step_share > 0) || !(options.probe_share > 0) ||
+      !(options.unit > 0)) {
+    throw InputError("through defence: steps below 0, or no starts, step or unit, expected e.g. 10 steps of 0.1");
   }
 }
 
@@ -94,7 +97,7 @@ void ThroughDefenceAttack::perturb(std::span<const Lane> lanes, std::span<const 
   const torch::Device device = judge_->parameters().front().device();
   const torch::Tensor judged = judge_->forward(to_tensor(row_truths).to(device)).to(torch::kCPU);
   torch::Tensor at = to_tensor(row_starts);
-  Descents descents(*defence, ball_, std::move(row_lanes), std::move(row_truths), judged);
+  Descents descents(*defence, ball_, std::move(row_lanes), std::move(row_truths), judged, options_.unit);
   descents.look(at);
   for (int i = 0; i < options_.steps; ++i) {
     const torch::Tensor sign = descents.slope_sign(at, options_.probe_share * ball_.eps());

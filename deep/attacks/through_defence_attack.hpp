@@ -14,6 +14,7 @@ struct ThroughDefenceOptions {
   double step_share = 0.1;    ///< of eps, per step
   double probe_share = 0.05;  ///< of eps: how far to either side the slope is measured
   int starts = 4;             ///< random starts; the best place of all is shown
+  double unit = 1;            ///< what one reward is in the agent's values
 };
 
 /// Adaptive descent: projected descent, along the sign of the slope, of sum_a softmax(V(t))_a Q_judge(s, a), where V(t)

@@ -1,16 +1,9 @@
 #include <maximin/deep/report/results_file.hpp>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
+#include <algorithm>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <maximin/deep/report/json_fields.hpp>
 #include <maximin/models/files/output_file.hpp>
@@ -78,8 +71,18 @@ double take_runs(ResultCell& to, const ResultCell& from, std::string_view where)
   return seconds;
 }
 
-[[noreturn]] void refuse_writing(const fs::path& path, int reason) {
-  throw InputError(fmt::format("{}: {}, expected a file that can be written", path.string(), std::strerror(reason)));
+/// Makes the cell's measures means over its runs, the last of which has these.
+void take_measures(ResultCell& to, const std::vector<std::pair<std::string, double>>& of_run) {
+  const auto n = static_cast<double>(to.runs.size());
+  for (const auto& [name, value] : of_run) {
+    const auto known =
+        std::find_if(to.measures.begin(), to.measures.end(), [&](const auto& m) { return m.first == name; });
+    if (known == to.measures.end()) {
+      to.measures.emplace_back(name, value);
+    } else {
+      known->second += (value - known->second) / n;
+    }
+  }
 }
 
 }  // namespace
@@ -92,44 +95,12 @@ void write_results(const fs::path& path, const ResultTable& table) {
   write_file(path, readable_json(to_json(table)), Overwrite::replace);
 }
 
-/// A file beside the table, held as long as one writes: the table itself is replaced at each writing.
-struct ResultFile::Lock {
-  explicit Lock(const fs::path& table) : path(table.string() + ".lock") {
-    for (;;) {
-      descriptor = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-      if (descriptor < 0) refuse_writing(path, errno);
-      if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-        ::close(descriptor);
-        throw InputError(fmt::format("{}: another run is writing it, expected one run at a time", table.string()));
-      }
-      struct stat held {
-      }, named{};
-      const bool same = ::fstat(descriptor, &held) == 0 && ::stat(path.c_str(), &named) == 0 &&
-                        held.st_ino == named.st_ino && held.st_dev == named.st_dev;
-      if (same) return;
-      ::close(descriptor);  // its last holder removed it in between
-    }
-  }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
-  ~Lock() {
-    ::unlink(path.c_str());
-    ::close(descriptor);
-  }
-
-  std::string path;
-  int descriptor = -1;
-};
-
-ResultFile::ResultFile(fs::path path, ResultTable table, std::unique_ptr<Lock> lock)
+ResultFile::ResultFile(fs::path path, ResultTable table, FileLock lock)
     : path_(std::move(path)), table_(std::move(table)), lock_(std::move(lock)) {}
-ResultFile::ResultFile(ResultFile&&) noexcept = default;
-ResultFile& ResultFile::operator=(ResultFile&&) noexcept = default;
-ResultFile::~ResultFile() = default;
 
 ResultFile ResultFile::open(const fs::path& path, ResultTable plan) {
   validate(plan);
-  auto lock = std::make_unique<Lock>(path);
+  FileLock lock(path);
   if (fs::exists(path)) {
     const ResultTable old_table = read_results(path);
     const double seconds = plan.wall_seconds + old_table.wall_seconds;
@@ -149,9 +120,12 @@ bool ResultFile::has(std::string_view block, const ResultCell& cell, std::uint64
 void ResultFile::put(std::string_view block, const ResultCell& cell, const SeedRun& run) {
   ResultTable next = table_;
   ResultCell& to = cell_of(block_of(next, block), cell);
-  to.runs.push_back(run);
+  const auto place = std::upper_bound(to.runs.begin(), to.runs.end(), run, [](const SeedRun& a, const SeedRun& b) {
+    return a.training_seed < b.training_seed;
+  });
+  to.runs.insert(place, run);
   if (!cell.note.empty()) to.note = cell.note;
-  if (!cell.measures.empty()) to.measures = cell.measures;
+  take_measures(to, cell.measures);
   next.wall_seconds += run.wall_seconds;
   write_results(path_, next);  // validates; the old table stays where it throws
   table_ = std::move(next);

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
 #include <maximin/deep/report/results.hpp>
+#include <maximin/models/files/file_lock.hpp>
 
 namespace maximin::deep {
 
@@ -39,26 +39,21 @@ class ResultFile {
   /// configuration differs from the plan's, or when another run is writing it.
   static ResultFile open(const std::filesystem::path& path, ResultTable plan);
 
-  ResultFile(ResultFile&&) noexcept;
-  ResultFile& operator=(ResultFile&&) noexcept;
-  ~ResultFile();
-
   const ResultTable& table() const { return table_; }
   bool has(std::string_view block, const ResultCell& cell, std::uint64_t training_seed) const;
 
   /// Adds a run to a cell, which is made if the plan has none (in a block that is made if there is none), and writes
-  /// the file. `cell` names agent, attack and eps; its measures and note replace the old where they are not empty. The
-  /// run's wall_seconds are added to the table's. Throws InputError when the seed is there already or a number is not
-  /// finite.
+  /// the file. `cell` names agent, attack and eps; its measures are those of the run, the table's the means over runs;
+  /// its note replaces the old where it is not empty. The run's wall_seconds are added to the table's. Throws
+  /// InputError when the seed is there already or a number is not finite.
   void put(std::string_view block, const ResultCell& cell, const SeedRun& run);
 
  private:
-  struct Lock;
-  ResultFile(std::filesystem::path path, ResultTable table, std::unique_ptr<Lock> lock);
+  ResultFile(std::filesystem::path path, ResultTable table, FileLock lock);
 
   std::filesystem::path path_;
   ResultTable table_;
-  std::unique_ptr<Lock> lock_;
+  FileLock lock_;
 };
 
 /// Takes over into `table` every run of `other` that it does not have; made for tables whose seeds ran on several

@@ -226,6 +226,44 @@ def without_seconds(value):
     return [without_seconds(v) for v in value] if isinstance(value, list) else value
 
 
+def check_one_training_at_a_time(program):
+    """Two runs never write one training."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        command = ["train", "dqn", "--folder", folder]
+        first = subprocess.Popen([program] + command, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while first.poll() is None and not os.path.exists(os.path.join(folder, "dqn-seed1.training")):
+            time.sleep(0.01)
+        second = deep(program, command)
+        if second.returncode != 2 or b"dqn-seed1.agent: another run is writing it" not in second.stderr:
+            problems.append("a second run: exit code %d, %r" % (second.returncode, second.stderr))
+        first.kill()
+        first.wait()
+        after = deep(program, ["train", "dqn", "--frames", "600", "--folder", folder])
+        if b"another specification" not in after.stderr:  # a lock outlives nobody
+            problems.append("after a kill: exit code %d, %r" % (after.returncode, after.stderr))
+    return problems
+
+
+def check_table_in_parts(program):
+    """A table made part by part is the table."""
+    with tempfile.TemporaryDirectory() as folder:
+        def make(name, attacks):
+            where = os.path.join(folder, name)
+            done = deep(program, ["table", "gridworld", "--only", "dqn", "--frames", "600", "--seeds", "1", "--episodes", "2",
+                                  "--folder", where, "--output", where, "--attacks"] + attacks)
+            with open(os.path.join(where, "gridworld.json")) as f:
+                table = without_seconds(json.load(f, parse_constant=no_constants))
+            return done.returncode, table["configuration"], {
+                (b["name"], c["agent"], c["attack"], c["eps"]): c["runs"] for b in table["blocks"] for c in b["cells"]}
+        whole = make("whole", ["none", "pgd"])
+        part = make("parts", ["none"])
+        parts = make("parts", ["pgd"])
+    if whole != parts or part == parts or whole[0] != 0:
+        return ["in parts %r, as a whole %r" % (parts, whole)]
+    return []
+
+
 def check_killed_table(program):
     """A table killed at random, and interrupted, ends as the same table."""
     problems = []
@@ -272,7 +310,8 @@ def check_killed_table(program):
     return problems
 
 
-CHECKS = [check_help, check_killed_training, check_interrupted_training, check_agents, check_killed_table]
+CHECKS = [check_help, check_killed_training, check_interrupted_training, check_agents, check_one_training_at_a_time, check_table_in_parts,
+          check_killed_table]
 
 
 if __name__ == "__main__":

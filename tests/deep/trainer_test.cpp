@@ -50,7 +50,7 @@ struct Training {
     acting.belief_states = spec.training_belief_states;
     parts.belief = make_belief(acting, spec.eps, nullptr);
     parts.aggregator = aggregator_named(spec.aggregator);
-    parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values(), *agent.q);
+    parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values_in_rewards(), *agent.q);
     parts.loss = agent.loss;
     trainer.emplace(spec.training, parts);
   }
