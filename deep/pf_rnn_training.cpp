@@ -173,7 +173,8 @@ PfTrainingOptions PfTrainingOptions::published() {
 }
 
 torch::Tensor pf_loss(const PfStep& step, const torch::Tensor& truth, double eps, const PfTrainingOptions& options) {
-  const torch::Tensor mean_loss = (step.mean - truth).square().sum(1) / (eps * eps);
+  const double unit = options.kernel > 0 ? eps : 1;  // both parts as published, or both in balls
+  const torch::Tensor mean_loss = (step.mean - truth).square().sum(1) / (unit * unit);
   const torch::Tensor squares = (step.places - truth.unsqueeze(1)).square().sum(2);
   const double width = options.kernel * eps;
   const torch::Tensor errors = options.kernel > 0 ? squares / (2 * width * width) : squares;

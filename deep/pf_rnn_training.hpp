@@ -34,7 +34,8 @@ struct PfTrainingOptions {
   /// percent of the steps instead of 95, and the error was the same.
   double dropout = 0;
 
-  double mean_weight = 1;    ///< of the squared distance between the weighted mean and the truth, in eps
+  double mean_weight =
+      1;  ///< of the squared distance between the weighted mean and the truth, in eps (in units if kernel 0)
   double elbo_weight = 0.5;  ///< of -log (1/K) sum_i exp(-err_i^2 / 2)
   /// err_i is the distance in units of kernel * eps, so that the particles are a sample that spreads as the truth may;
   /// 0: exp(-err_i^2) in world units, as published, where a ball is so small that this is the mean of err_i^2 and the

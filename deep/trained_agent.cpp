@@ -29,8 +29,8 @@ Stream weights_stream(std::uint64_t seed, std::uint64_t which) {
   return Stream(seed, (std::uint64_t{1} << 62U) + which);
 }
 
-/// The published losses, with bounds as narrow as there are: with intervals alone Radial-DQN and WocaR-DQN unlearn the
-/// Gridworld.
+/// The losses with their papers' forms but for these: Radial-DQN, CAR-DQN and WocaR-DQN have CROWN's bounds, for with
+/// intervals alone they unlearn the Gridworld, and Radial-DQN's overlap is of merged bounds of differences.
 template <class Options>
 Options baseline_options(const AgentSpec& spec) {
   Options o;

@@ -68,7 +68,8 @@ struct WocarLossOptions {
 ///     y_w = R + gamma (1 - terminal) min_{a reachable in B(s')} Q_w'(s', a).
 ///
 /// The loss is kappa TD + (1 - kappa) robust term + TD of the critic. The critic shares no weight with Q, so that with
-/// an optimiser like Adam its weight against the rest is of no account.
+/// an optimiser like Adam its weight against the rest is of no account but for clipping, which is of the joint
+/// gradient.
 class WocarLoss final : public Loss {
  public:
   /// The critic begins with weights of its own from `rng`. Throws InputError, naming the option, when one is out of

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -11,6 +12,7 @@
 #include <maximin/deep/attacks/best_response_attack.hpp>
 #include <maximin/deep/attacks/gradient_attack.hpp>
 #include <maximin/deep/attacks/mixed_attack.hpp>
+#include <maximin/deep/attacks/named_attack.hpp>
 #include <maximin/deep/attacks/offset_attack.hpp>
 #include <maximin/deep/attacks/pa_ad_attack.hpp>
 #include <maximin/deep/attacks/simple_attacks.hpp>
@@ -19,7 +21,10 @@
 #include <maximin/deep/belief_agent.hpp>
 #include <maximin/deep/set_beliefs.hpp>
 #include <maximin/deep/tensors.hpp>
+#include <maximin/deep/trained_agent.hpp>
 #include <maximin/theory/error.hpp>
+
+#include <unistd.h>
 
 #include "tiny_networks.hpp"
 
@@ -313,6 +318,45 @@ TEST(Attacks, BadOptionsAreNamed) {
   Blind blind;
   ThroughDefenceAttack through(q, ball);
   EXPECT_THROW(shown_by(through, blind, {{5, 5}}, 1), InputError);
+}
+
+/// A learned attack is one agent's: its file is refused for another, and for another length of training.
+TEST(NamedAttack, ALearnedAttackBelongsToItsAgent) {
+  AgentSpec spec = recipe("bp-dqn", 0.5, 1);
+  const TrainedAgent agent = untrained(spec);
+  spec.training.seed = 2;
+  const TrainedAgent other = untrained(spec);
+  const Acting acting = acting_of(spec);
+  const auto target = [&](const TrainedAgent& a) {
+    return AttackTarget{a.values_in_rewards(), a.values_in_rewards(), identity_of(a, acting),
+                        spec.training.reward_scale, [&a, acting] { return make_agent(a, acting); }};
+  };
+  AttackSetting setting;
+  setting.name = "pa-ad-adaptive";
+  setting.eps = 0.5;
+  setting.quick = true;
+  setting.file = std::filesystem::temp_directory_path() / ("maximin-attacker-" + std::to_string(::getpid()));
+  std::filesystem::remove(setting.file);
+  long reports = 0;
+  setting.progress = [&](double, double) { return ++reports > 0; };
+  ASSERT_NE(make_attack(setting, target(agent)), nullptr);
+  const long learning = reports;
+  EXPECT_GT(learning, 0);
+  EXPECT_NE(make_attack(setting, target(agent)), nullptr);
+  EXPECT_EQ(reports, learning) << "read, not learned again";
+  EXPECT_THROW(make_attack(setting, target(other)), InputError);
+  setting.quick = false;
+  EXPECT_THROW(make_attack(setting, target(agent)), InputError);
+  std::filesystem::remove(setting.file);
+}
+
+/// Values in another unit attack as they are told: a softmax tells units apart, an argmax does not.
+TEST(NamedAttack, SeesValuesInRewards) {
+  const TrainedAgent agent = untrained(recipe("dqn", 0.5, 1));
+  const torch::Tensor states = torch::tensor({{1.5F, 2.5F}, {7.25F, 8.5F}});
+  const double unit = agent.spec.training.reward_scale;
+  ASSERT_NE(unit, 1);
+  EXPECT_TRUE(torch::allclose(agent.values_in_rewards()->forward(states) * unit, agent.values()->forward(states)));
 }
 
 }  // namespace

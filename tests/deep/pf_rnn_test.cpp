@@ -415,6 +415,12 @@ TEST(PfRnn, TrainingIsReproducibleAndRefusesNonsense) {
   long calls = 0;
   train_pf_rnn(*module, as_published, [&](const PfTrainingProgress&) { return ++calls < 1; });
   EXPECT_EQ(calls, 1);
+  // One particle, on the mean: both parts of the loss are the squared distance, each once, whatever the radius.
+  const torch::Tensor truth = torch::tensor({{1.0, 2.0}}), place = torch::tensor({{1.3, 2.4}});
+  PfStep step;
+  step.mean = place;
+  step.places = place.unsqueeze(1);
+  EXPECT_NEAR(pf_loss(step, truth, 0.1, as_published).item<double>(), 2 * 0.25, 1e-5);
   as_published.particles = 3;
   EXPECT_THROW(train_pf_rnn(*module, as_published), InputError);
   published.eps = 0;

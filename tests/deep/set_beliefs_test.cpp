@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <maximin/deep/mean_state.hpp>
 #include <maximin/deep/set_beliefs.hpp>
 #include <maximin/deep/tensors.hpp>
 
@@ -190,6 +191,35 @@ TEST(SetBeliefs, PeekForeseesUpdateAndLanesDoNotDependOnEachOther) {
   together.update(std::vector<Lane>{0}, std::vector<Action>{0}, std::vector<Point>{{8.5, 4.5}});
   EXPECT_EQ(together.empty_intersections(), 1);
   EXPECT_TRUE(together.holds(0, {8.5, 4.5}));
+}
+
+/// The mean of a belief is one state, its middle, and says of the set what the belief says.
+TEST(MeanState, IsTheMeanOfTheWholeBelief) {
+  const ObservationBall ball(0.5);
+  const auto whole = std::make_shared<SetBeliefs>(SetBelief::exact, ball, 64);
+  MeanState mean(std::make_shared<SetBeliefs>(SetBelief::exact, ball, 64));
+  Wanderers w(0.5);
+  std::vector<Lane> all;
+  for (Lane l = 0; l < lanes; ++l) all.push_back(l);
+  whole->resize(lanes);
+  mean.resize(lanes);
+  for (int t = 0; t < 10; ++t) {
+    const BeliefStates peeked = mean.peek(all, w.actions, w.shown);
+    const BeliefStates states = whole->update(all, w.actions, w.shown), one = mean.update(all, w.actions, w.shown);
+    ASSERT_EQ(one.states.size(1), mean.states_per_belief());
+    const torch::Tensor expected = (states.states * states.weights.unsqueeze(2)).sum(1);
+    EXPECT_TRUE(torch::allclose(one.states.select(1, 0), expected, 0, 1e-5));
+    EXPECT_TRUE(torch::equal(one.states, peeked.states));
+    EXPECT_FALSE(torch::allclose(one.states.select(1, 0), states.states.select(1, 0)));
+    for (Lane l = 0; l < lanes; ++l) {
+      EXPECT_EQ(mean.holds(l, w.truths[static_cast<std::size_t>(l)]), true);
+      EXPECT_EQ(mean.size(l), whole->size(l));
+    }
+    for (const Lane l : w.step()) {
+      whole->forget(l);
+      mean.forget(l);
+    }
+  }
 }
 
 }  // namespace
