@@ -185,12 +185,12 @@ class TableMaker {
             trained->values_in_rewards(), deep::identity_of(*trained, acting), spec.training.reward_scale};
   }
 
-  /// Solved once for each radius; 4 squares to a move take a second, at either.
+  /// Solved once for each radius, in seconds: by as many squares to a move as bench/gridworld_sure shows to pay.
   const HullControl& sure_control(double eps) {
     const std::lock_guard lock(mutex_);
     const auto found = controls_.find(eps);
-    return found != controls_.end() ? found->second
-                                    : controls_.emplace(eps, HullControl(ObservationBall(eps), 4)).first->second;
+    if (found != controls_.end()) return found->second;
+    return controls_.emplace(eps, HullControl(ObservationBall(eps), eps < 0.25 ? 10 : 3)).first->second;
   }
 
   struct Match {
