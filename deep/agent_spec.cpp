@@ -46,6 +46,7 @@ void visit_fields(TrainOptions& o, Visitor& visit) {
   visit("adam_eps", o.adam_eps);
   visit("gradient_clip", o.gradient_clip);
   visit("warm_up", o.warm_up);
+  visit("averaged_share", o.averaged_share);
   visit("explore_start", o.explore_start);
   visit("explore_end", o.explore_end);
   visit("explore_frames", o.explore_frames);

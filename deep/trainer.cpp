@@ -38,6 +38,7 @@ void TrainOptions::check() const {
   require(adam_eps > 0, "adam_eps", adam_eps, "a positive number");
   require(gradient_clip > 0, "gradient_clip", gradient_clip, "a positive number");
   require(warm_up >= 0, "warm_up", double(warm_up), "0 or more");
+  require(averaged_share >= 0 && averaged_share <= 1, "averaged_share", averaged_share, "0 to 1");
   require(explore_start >= 0 && explore_start <= 1, "explore_start", explore_start, "0 to 1");
   require(explore_end >= 0 && explore_end <= 1, "explore_end", explore_end, "0 to 1");
   require(target_every >= 1, "target_every", double(target_every), "at least 1");
@@ -51,6 +52,7 @@ Trainer::Trainer(const TrainOptions& options, TrainingParts parts)
   options_.check();
   parts_.online->to(parts_.device);
   target_ = frozen_copy(*parts_.online);
+  average_ = frozen_copy(*parts_.online);
   agent_ = std::make_unique<BeliefAgent>(parts_.loss->acting(parts_.online), parts_.belief, parts_.aggregator);
   std::vector<torch::Tensor> trained = parts_.online->parameters();
   for (const auto& module : parts_.loss->modules()) {
@@ -207,10 +209,21 @@ void Trainer::learn(CurvePoint& point, long& updates) {
     point.loss += size;
     ++updates;
   }
-  if (frames_ - copied_at_ >= options_.target_every) {
-    target_->copy_from(*parts_.online);
-    parts_.loss->copy_targets();
-    copied_at_ = frames_;
+  if (frames_ - copied_at_ >= options_.target_every) copy_to_target();
+}
+
+void Trainer::copy_to_target() {
+  target_->copy_from(*parts_.online);
+  parts_.loss->copy_targets();
+  copied_at_ = frames_;
+  const double left = static_cast<double>(options_.frames - frames_) / static_cast<double>(options_.frames);
+  if (left >= options_.averaged_share) return;
+  ++averaged_;
+  torch::NoGradGuard no_grad;
+  const auto online = parts_.online->parameters(), average = average_->parameters();
+  for (std::size_t i = 0; i < average.size(); ++i) {
+    torch::Tensor mean = average[i];
+    mean += (online[i] - mean) / static_cast<double>(averaged_);
   }
 }
 
@@ -239,6 +252,7 @@ CurvePoint Trainer::stretch() {
   settle(all_lanes_);
   ++stretches_;
   updates_ += updates;
+  if (done() && averaged_ > 0) parts_.online->copy_from(*average_);
   const double none = std::numeric_limits<double>::quiet_NaN();
   point.frames = frames_;
   point.updates = updates_;
@@ -251,10 +265,11 @@ CurvePoint Trainer::stretch() {
 }
 
 void Trainer::save(TensorFile& file) const {
-  file.tensors["counters"] = torch::tensor({frames_, updates_, stretches_, copied_at_}, torch::kInt64);
+  file.tensors["counters"] = torch::tensor({frames_, updates_, stretches_, copied_at_, averaged_}, torch::kInt64);
   file.tensors["owed"] = torch::tensor({owed_}, torch::kDouble);
   put_module(file, "online", *parts_.online);
   put_module(file, "target", *target_);
+  put_module(file, "average", *average_);
   const auto modules = parts_.loss->modules();
   for (std::size_t i = 0; i < modules.size(); ++i) put_module(file, "loss" + std::to_string(i), *modules[i]);
   replay_.save(file);
@@ -265,12 +280,13 @@ void Trainer::save(TensorFile& file) const {
 }
 
 void Trainer::load(const TensorFile& file) {
-  torch::Tensor counters = torch::zeros({4}, torch::kInt64), owed = torch::zeros({1}, torch::kDouble);
+  torch::Tensor counters = torch::zeros({5}, torch::kInt64), owed = torch::zeros({1}, torch::kDouble);
   file.copy_to("counters", counters);
   file.copy_to("owed", owed);
   if (counters.lt(0).any().item<bool>()) throw InputError("counters below 0, expected what a training counted");
   get_module(file, "online", *parts_.online);
   get_module(file, "target", *target_);
+  get_module(file, "average", *average_);
   const auto modules = parts_.loss->modules();
   for (std::size_t i = 0; i < modules.size(); ++i) get_module(file, "loss" + std::to_string(i), *modules[i]);
   replay_.load(file);
@@ -284,6 +300,7 @@ void Trainer::load(const TensorFile& file) {
   updates_ = counters[1].item<long>();
   stretches_ = counters[2].item<long>();
   copied_at_ = counters[3].item<long>();
+  averaged_ = counters[4].item<long>();
   owed_ = owed[0].item<double>();
 }
 

@@ -37,8 +37,11 @@ struct TrainOptions {
   double explore_start = 1, explore_end = 0.05;
   long explore_frames = 200'000;  ///< over which the share of random actions falls linearly
   long target_every = 2000;       ///< frames between hard copies to the target network
-  double reward_scale = 0.02;     ///< networks see rewards times this
-  long stretch_frames = 20'000;   ///< see Trainer::stretch
+  /// Share of the frames, at the end, over which what is copied to the target is averaged too: in the end the network
+  /// has the average of these weights (Izmailov et al. 2018), which forgets the noise of single updates. 0: none.
+  double averaged_share = 0;
+  double reward_scale = 0.02;    ///< networks see rewards times this
+  long stretch_frames = 20'000;  ///< see Trainer::stretch
   BootstrapBelief bootstrap = BootstrapBelief::next;
   /// The noisy environment of the paper's appendix: the learner never sees a true state; the mean of the belief is
   /// stored in its place.
@@ -109,16 +112,19 @@ class Trainer {
   void settle(std::span<const Lane> lanes);
   void move(CurvePoint& point);
   void learn(CurvePoint& point, long& updates);
+  void copy_to_target();
   Point learner_state(long row, Point truth) const;
   double exploration() const;
 
   TrainOptions options_;
   TrainingParts parts_;
   QNetworkPtr target_;
+  QNetworkPtr average_;  // of `averaged_` networks
   std::unique_ptr<BeliefAgent> agent_;
   Replay replay_;
   std::unique_ptr<torch::optim::Adam> optimiser_;
   long frames_ = 0, updates_ = 0, stretches_ = 0;
+  long averaged_ = 0;
   long copied_at_ = 0;  // frames at the last copy to the target network
   double owed_ = 0;     // updates that are due
 

@@ -44,7 +44,7 @@ TEST(AgentSpec, EveryRecipeIsReadAsItIsWritten) {
   // Every field is told: each that is changed shows in the JSON.
   const AgentSpec spec = recipe("bp-dqn", 0.1, 1);
   const Json flat = to_json(spec).flatten();
-  EXPECT_EQ(flat.size(), 45U + spec.network.hidden.size() - 2);
+  EXPECT_EQ(flat.size(), 46U + spec.network.hidden.size() - 2);
   AgentSpec changed = spec;
   changed.training.replay.beta_start = 0.5;
   EXPECT_NE(to_json(changed), to_json(spec));

@@ -121,6 +121,7 @@ TEST(Trainer, ContinuesBitForBit) {
         s.double_q = false;
         s.train_attack = "mixed";
         s.training.replay.prioritised = true;
+        s.training.averaged_share = 0.5;
       }),
       small([](AgentSpec& s) { s.train_attack = "pgd"; }),  // Double DQN
       small([](AgentSpec& s) { s.loss = "wocar"; }),        // further networks
@@ -163,6 +164,27 @@ TEST(Trainer, ContinuesBitForBit) {
   AgentSpec other = spec;
   other.training.seed = 2;
   EXPECT_NE(difference(whole, uninterrupted(other)), "");
+}
+
+/// Weights at the end, one after another.
+Tensor final_weights(double averaged_share) {
+  Training training(small([&](AgentSpec& s) {
+    s.training.averaged_share = averaged_share;
+    s.training.target_every = 8;  // copied, and averaged, in every tick
+  }));
+  while (!training.trainer->done()) training.trainer->stretch();
+  std::vector<Tensor> weights;
+  for (const Tensor& w : training.agent.q->parameters()) weights.push_back(w.detach().flatten().clone());
+  return torch::cat(weights);
+}
+
+/// The average of the last weights alone is these weights; of more it is not, but it is near.
+TEST(Trainer, EndsWithTheAverageOfItsLastWeights) {
+  const Tensor last = final_weights(0), of_one = final_weights(1e-9), of_some = final_weights(0.02);
+  EXPECT_TRUE(torch::allclose(of_one, last, 0, 1e-6));
+  EXPECT_FALSE(torch::allclose(of_some, last, 0, 1e-6));
+  const Tensor first = final_weights(1);
+  EXPECT_LT((of_some - last).norm().item<double>(), (first - last).norm().item<double>());
 }
 
 TEST(Trainer, RefusesCheckpointsOfOtherTrainingsAndOptionsOutOfRange) {
