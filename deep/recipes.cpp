@@ -123,7 +123,12 @@ std::optional<AgentSpec> beginning_of(const AgentSpec& spec, const Effort& effor
   AgentSpec first = recipe(spec.start_from, spec.eps, spec.training.seed, effort);
   first.network = spec.network;
   first.training.reward_scale = spec.training.reward_scale;
-  if (first.name() != spec.name()) return first;
+  bool comes_back = first.name() == spec.name();
+  for (AgentSpec s = first; !comes_back && !s.start_from.empty();) {
+    s = recipe(s.start_from, spec.eps, spec.training.seed, effort);
+    comes_back = s.name() == spec.name();
+  }
+  if (!comes_back) return first;
   throw InputError(fmt::format("start_from: {}, expected an agent that is not called {} too, or another kind",
                                spec.start_from, spec.name()));
 }

@@ -54,6 +54,9 @@ std::string whole(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, error)) {
     throw InputError(fmt::format("{}: is a folder, expected a file", path.string()));
   }
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    throw InputError(fmt::format("{}: is a device or a pipe, expected a file", path.string()));
+  }
   std::ifstream in(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || in.bad()) {
@@ -190,6 +193,12 @@ torch::Tensor tensor_of_bytes(const std::string& bytes) {
 
 std::string bytes_of_tensor(const torch::Tensor& tensor) {
   return {static_cast<const char*>(tensor.data_ptr()), tensor.nbytes()};
+}
+
+std::uint32_t checksum_of(const torch::nn::Module& module) {
+  std::string bytes;
+  for (const torch::Tensor& tensor : module.parameters()) bytes += bytes_of_tensor(tensor);
+  return crc_of(bytes);
 }
 
 void put_module(TensorFile& file, const std::string& prefix, const torch::nn::Module& module) {

@@ -35,6 +35,9 @@ TensorFile read_tensor_file(const std::filesystem::path& path, const std::string
 torch::Tensor tensor_of_bytes(const std::string& bytes);
 std::string bytes_of_tensor(const torch::Tensor& tensor);
 
+/// A checksum (CRC-32) of all weights of a module.
+std::uint32_t checksum_of(const torch::nn::Module& module);
+
 /// All parameters and buffers of a module, as PREFIX.NAME; they share their numbers with the module.
 void put_module(TensorFile& file, const std::string& prefix, const torch::nn::Module& module);
 /// Takes them back. Throws InputError as TensorFile::copy_to, and where a number is not finite.

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <maximin/deep/losses/car_loss.hpp>
 #include <maximin/deep/losses/radial_loss.hpp>
@@ -101,6 +100,11 @@ std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const 
   if (acting.belief == "exact") return std::make_shared<SetBeliefs>(SetBelief::exact, ball, acting.belief_states);
   if (!particle_filter)
     throw InputError(fmt::format("belief: {}, expected an agent with a particle filter", acting.belief));
+  const char* cell = particle_filter->options().cell == PfCell::gru ? "pf-gru" : "pf-lstm";
+  if (acting.belief != cell) {
+    throw InputError(
+        fmt::format("belief: {}, expected {}, which this agent's particle filter is", acting.belief, cell));
+  }
   return std::make_shared<PfRnnBelief>(particle_filter);
 }
 
@@ -110,17 +114,9 @@ std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Actin
 }
 
 std::string identity_of(const TrainedAgent& trained, const Acting& acting) {
-  uLong sum = crc32(0, nullptr, 0);
-  const auto add = [&](const torch::nn::Module& module) {
-    for (const torch::Tensor& tensor : module.parameters()) {
-      const std::string bytes = bytes_of_tensor(tensor);
-      sum = crc32(sum, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
-    }
-  };
-  add(*trained.values());
-  if (trained.particle_filter) add(*trained.particle_filter);
-  return fmt::format("{} {:08x}, {} of {}, random {:g}", trained.spec.name(), sum, acting.aggregator, acting.belief,
-                     acting.random_actions);
+  const std::uint32_t filter = trained.particle_filter ? checksum_of(*trained.particle_filter) : 0;
+  return fmt::format("{} {:08x} {:08x}, {} of {}, random {:g}", trained.spec.name(), checksum_of(*trained.values()),
+                     filter, acting.aggregator, acting.belief, acting.random_actions);
 }
 
 TrainedAgent untrained(const AgentSpec& spec) {

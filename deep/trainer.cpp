@@ -38,6 +38,9 @@ void TrainOptions::check() const {
   require(adam_eps > 0, "adam_eps", adam_eps, "a positive number");
   require(gradient_clip > 0, "gradient_clip", gradient_clip, "a positive number");
   require(warm_up >= 0, "warm_up", double(warm_up), "0 or more");
+  // Sums of them stay whole numbers.
+  require(frames <= 1'000'000'000'000 && stretch_frames <= 1'000'000'000'000, "frames or stretch_frames",
+          double(std::max(frames, stretch_frames)), "10^12 at most");
   require(averaged_share >= 0 && averaged_share <= 1, "averaged_share", averaged_share, "0 to 1");
   require(explore_start >= 0 && explore_start <= 1, "explore_start", explore_start, "0 to 1");
   require(explore_end >= 0 && explore_end <= 1, "explore_end", explore_end, "0 to 1");
@@ -284,6 +287,10 @@ void Trainer::load(const TensorFile& file) {
   file.copy_to("counters", counters);
   file.copy_to("owed", owed);
   if (counters.lt(0).any().item<bool>()) throw InputError("counters below 0, expected what a training counted");
+  const double due = owed[0].item<double>(), at_most = 1 + static_cast<double>(options_.lanes);
+  const bool counted =
+      counters[0].item<long>() <= options_.frames && counters[3].item<long>() <= counters[0].item<long>();
+  if (!counted || !(due >= 0 && due <= at_most)) throw InputError("counters beyond the training's, expected its own");
   get_module(file, "online", *parts_.online);
   get_module(file, "target", *target_);
   get_module(file, "average", *average_);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <maximin/apps/maximin_deep/commands.hpp>
 #include <maximin/deep/evaluation.hpp>
 #include <maximin/deep/report/estimate.hpp>
+#include <maximin/theory/error.hpp>
 
 namespace maximin::apps {
 
@@ -42,7 +44,18 @@ const char* words_of(deep::Knowledge knowledge) {
   return "knows the whole defence";
 }
 
+/// An attacker's file is of one attack on one agent.
+void expect_one_attacker(const EvaluateCommand& command) {
+  if (command.options.attacker.empty()) return;
+  const auto learned = std::count_if(command.attacks.begin(), command.attacks.end(),
+                                     [](const std::string& name) { return deep::attack_named(name).learned; });
+  if (learned == 1 && command.files.size() == 1) return;
+  throw InputError(fmt::format("--attacker: one file for {} learned attacks on {} agents, expected one and one",
+                               learned, command.files.size()));
+}
+
 int evaluate(const EvaluateCommand& command) {
+  expect_one_attacker(command);
   Table table;
   table.column("agent", Align::left).column("attack", Align::left).column("eps", Align::point);
   table.column("return", Align::point)

@@ -44,7 +44,12 @@ std::vector<deep::AgentSpec> planned(const TrainCommand& command) {
   std::vector<deep::AgentSpec> specs;
   std::set<std::string> names;
   const auto add = [&](const deep::AgentSpec& spec) {
-    if (names.insert(spec.name()).second) specs.push_back(spec);
+    if (!names.insert(spec.name()).second) {
+      throw InputError(spec.name() +
+                       ": asked for twice, expected trainings of different names; does --config set the kind "
+                       "or the seed of all?");
+    }
+    specs.push_back(spec);
   };
   const bool configured = !command.config.empty();
   const nlohmann::ordered_json config =

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -25,7 +27,22 @@ struct WatchCommand {
   bool force = false;
 };
 
+/// No output takes the place of another file of this run.
+void expect_files_apart(const WatchCommand& command) {
+  namespace fs = std::filesystem;
+  const AttackedAgent& o = command.options;
+  std::vector<fs::path> files{o.file, o.judge, o.attacker, command.output, command.trace};
+  std::erase_if(files, [](const fs::path& file) { return file.empty(); });
+  for (const fs::path& output : {command.output, command.trace}) {
+    const auto same = [&](const fs::path& file) { return fs::weakly_canonical(file) == fs::weakly_canonical(output); };
+    if (!output.empty() && std::count_if(files.begin(), files.end(), same) > 1) {
+      throw InputError(output.string() + ": named twice, expected an output of its own");
+    }
+  }
+}
+
 int watch(const WatchCommand& command) {
+  expect_files_apart(command);
   const Match match = prepare_match(command.options);
   deep::EpisodeTrace trace =
       deep::trace_episode(*match.agent, *match.attack, ObservationBall(match.eps), command.seed, command.episode);

@@ -33,22 +33,35 @@ std::shared_ptr<GridAttack> gradient(const AttackSetting& setting, const AttackT
 }
 
 /// What a director's file says of its training, beside what the director says of itself.
-void take_training(nlohmann::ordered_json& about, const std::string& identity, long frames) {
-  const auto expect = [&](const char* what, const nlohmann::ordered_json& expected) {
+nlohmann::ordered_json training_of(const AttackSetting& setting, const AttackTarget& target, long frames) {
+  nlohmann::ordered_json about{
+      {"name", setting.name}, {"learned_against", target.identity}, {"frames", frames}, {"seed", setting.seed}};
+  if (setting.name == "director") about["judge"] = checksum_of(*target.judge);
+  return about;
+}
+
+/// Takes these fields out of the heading.
+void expect_training(nlohmann::ordered_json& about, const nlohmann::ordered_json& training) {
+  if (!about.is_object()) throw InputError("no attacker, expected what an attacker was taught");
+  for (const auto& [what, expected] : training.items()) {
     const nlohmann::ordered_json found = about.contains(what) ? about[what] : nlohmann::ordered_json();
     about.erase(what);
-    if (found == expected) return;
+    if (found == expected) continue;
     throw InputError(
-        fmt::format("{} is {}, expected {}: an attacker learns against one agent; remove the file, or name "
+        fmt::format("{} is {}, expected {}: an attacker is taught for one agent and setting; remove the file, or name "
                     "another",
                     what, found.dump(), expected.dump()));
-  };
-  expect("learned_against", identity);
-  expect("frames", frames);
+  }
+}
+
+void expect_folder_of(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.parent_path();
+  if (folder.empty() || std::filesystem::is_directory(folder)) return;
+  throw InputError(fmt::format("{}: no such folder, expected one for {}", folder.string(), file.filename().string()));
 }
 
 /// Reads the director's file, or teaches it against the agent and writes it. False where it was interrupted.
-bool learn(Director& director, GridAgent& victim, const AttackSetting& setting, const std::string& identity) {
+bool learn(Director& director, GridAgent& victim, const AttackSetting& setting, const AttackTarget& target) {
   DirectorTraining training;
   training.seed = setting.seed;
   if (setting.quick) {
@@ -59,14 +72,17 @@ bool learn(Director& director, GridAgent& victim, const AttackSetting& setting, 
   if (!setting.file.empty() && std::filesystem::exists(setting.file)) {
     try {
       TensorFile file = read_tensor_file(setting.file, "attacker");
-      take_training(file.about, identity, training.frames);
+      expect_training(file.about, training_of(setting, target, training.frames));
       director.load(file);
     } catch (const InputError& e) {
       const std::string what = e.what(), file = setting.file.string();
       throw InputError(what.starts_with(file) ? what : fmt::format("{}: {}", file, what));
+    } catch (const nlohmann::json::exception&) {
+      throw InputError(fmt::format("{}: no attacker, expected what an attacker was taught", setting.file.string()));
     }
     return true;
   }
+  expect_folder_of(setting.file);
   bool stopped = false;
   train_director(director, victim, ContinuousGridworld(), training, [&](const DirectorPoint& point) {
     const double share = static_cast<double>(point.frames) / static_cast<double>(training.frames);
@@ -77,8 +93,7 @@ bool learn(Director& director, GridAgent& victim, const AttackSetting& setting, 
   // Whoever plays with it plays as its file would have it.
   if (setting.file.empty()) return true;
   TensorFile file = director.save();
-  file.about["learned_against"] = identity;
-  file.about["frames"] = training.frames;
+  file.about.update(training_of(setting, target, training.frames));
   write_tensor_file(setting.file, file);
   return true;
 }
@@ -100,7 +115,7 @@ std::shared_ptr<GridAttack> learned(const AttackSetting& setting, const AttackTa
       setting.name == "pa-ad"
           ? std::make_unique<BeliefAgent>(target.values, std::make_shared<ObservedState>(), MeanAggregator{})
           : target.twin();
-  return learn(*director, *victim, setting, target.identity) ? director : nullptr;
+  return learn(*director, *victim, setting, target) ? director : nullptr;
 }
 
 }  // namespace
