@@ -4,15 +4,14 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
 
 #include <maximin/deep/pf_rnn_belief.hpp>
-#include <maximin/deep/pf_rnn_file.hpp>
 #include <maximin/deep/pf_rnn_training.hpp>
 #include <maximin/deep/prediction_errors.hpp>
+#include <maximin/deep/tensor_file.hpp>
 
 namespace {
 
@@ -47,8 +46,8 @@ void report_predictions(const PfRnnPtr& module, const PfBeliefOptions& options, 
     trial.deception = static_cast<Deception>(kind);
     const PredictionErrors e = evaluate_predictions(belief, trial);
     std::printf("%-11s %8.4f %8.4f %8.4f %8.4f %7.3f %7.3f %9.5f %9.5f %6ld\n",
-                std::string(name(trial.deception)).c_str(), e.belief, e.exact, e.shown, e.nearest, e.holds, e.inside,
-                e.size, e.exact_size, e.empty);
+                words_of(trial.deception).at(static_cast<std::size_t>(kind)), e.belief, e.exact, e.shown, e.nearest,
+                e.holds, e.inside, e.size, e.exact_size, e.empty);
   }
 }
 
@@ -113,8 +112,7 @@ int main(int argc, char** argv) {
   Stream rng(training.seed);
   PfRnnPtr module = std::make_shared<PfRnn>(shape, rng);
   if (given.contains("load")) {
-    std::ifstream in(given.at("load"), std::ios::binary);
-    module = load_pf_rnn(in, given.at("load"));
+    get_module(read_tensor_file(given.at("load"), "pf-rnn"), "filter", *module);
   } else {
     const auto start = std::chrono::steady_clock::now();
     double loss = 0, error = 0, shown_error = 0;
@@ -135,8 +133,9 @@ int main(int argc, char** argv) {
     });
   }
   if (given.contains("file")) {
-    std::ofstream out(given.at("file"), std::ios::binary);
-    save_pf_rnn(out, *module);
+    TensorFile file{"pf-rnn", {}, {}};
+    put_module(file, "filter", *module);
+    write_tensor_file(given.at("file"), file);
   }
   report_predictions(module, options, shape.eps);
   report_speed(module, 1);

@@ -8,6 +8,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include <maximin/deep/losses/car_loss.hpp>
+#include <maximin/deep/losses/radial_loss.hpp>
+#include <maximin/deep/losses/sa_loss.hpp>
+#include <maximin/deep/losses/td_loss.hpp>
+#include <maximin/deep/losses/wocar_loss.hpp>
+#include <maximin/deep/pf_rnn.hpp>
+#include <maximin/deep/pf_rnn_belief.hpp>
+#include <maximin/deep/pf_rnn_training.hpp>
 #include <maximin/deep/q_network.hpp>
 #include <maximin/deep/trainer.hpp>
 
@@ -19,16 +27,25 @@ struct AgentSpec {
   std::string kind = "dqn";  ///< for people and for tables
   double eps = 0.1;          ///< radius of the ball that it is trained to withstand and believes in
   QNetworkShape network;
-  std::string loss = "td";          ///< td, sa, wocar, radial, car
+  std::string loss = "td";  ///< td, sa, wocar, radial, car; "loss_options" in files are those of it:
+  /// As in their papers, but that all have CROWN's bounds, for with intervals alone they unlearn the Gridworld, and
+  /// Radial-DQN's overlap is of merged bounds of differences.
+  SaLossOptions sa;
+  RadialLossOptions radial{.bounds = BoundMethod::crown, .overlap = RadialOverlap::merged_difference};
+  CarLossOptions car{.bounds = BoundMethod::crown};
+  WocarLossOptions wocar{.reach_bounds = BoundMethod::crown, .robust_bounds = BoundMethod::crown};
   std::string belief = "observed";  ///< observed; or ball, exact, pf-lstm, pf-gru, and X-mean, the mean of X alone
   long belief_trajectories = 0;     ///< of clean play, all that a particle filter is taught; 0: as many as it takes
+  PfRnnOptions particle_filter;     ///< in files where the belief is one; but for its cell, radius and seed, which
+  PfTrainingOptions particle_filter_training;  ///< follow from the other fields
+  PfBeliefOptions particle_filter_belief;
   long belief_states = 1;           ///< K of set beliefs when acting
   long training_belief_states = 1;  ///< and in the replay memory
   std::string aggregator = "mean";  ///< min, mean, soft-min:BETA, cvar:ALPHA
   bool double_q = true;
-  std::string target_order = "max-of-aggregate";  ///< or aggregate-of-max, as in the released Gridworld code
+  TargetOrder target_order = TargetOrder::max_of_aggregate;
   double discount = 0.99;
-  std::string train_attack = "none";  ///< none, random, pgd, min-best, mixed
+  std::string train_attack = "none";  ///< none, random, pgd, pgd-released, min-best, mixed
   std::string start_from;             ///< kind of agent whose weights the training begins with; empty: none
   double random_actions = 0;          ///< share of random actions after training
   TrainOptions training;
@@ -40,6 +57,19 @@ struct AgentSpec {
   /// Whether eps has a part in it.
   bool knows_eps() const { return belief != "observed" || loss != "td" || train_attack != "none"; }
 };
+
+/// The options of a loss, one of the specification's, with what follows from its other fields.
+template <class Options>
+Options options_of_loss(const AgentSpec& spec, Options options) {
+  options.td.discount = spec.discount;
+  options.td.double_q = spec.double_q;
+  options.ramp.eps = spec.eps;
+  return options;
+}
+
+/// The particle filter's shape and training, in the same way.
+PfRnnOptions shape_of_filter(const AgentSpec& spec);
+PfTrainingOptions training_of_filter(const AgentSpec& spec);
 
 /// Names of beliefs.
 const std::vector<std::string>& belief_names();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -64,10 +65,6 @@ void write_features(const PfRnnOptions& options, const PfSight& sight, float* ou
   }
 }
 
-void require(bool holds, const std::string& what) {
-  if (!holds) throw InputError("PF-RNN options: " + what);
-}
-
 }  // namespace
 
 PfRnnOptions PfRnnOptions::published(double eps) {
@@ -84,14 +81,13 @@ PfRnnOptions PfRnnOptions::published(double eps) {
   return options;
 }
 
-void validate(const PfRnnOptions& o) {
-  require(o.particles >= 1 && o.particles <= 10'000,
-          "particles " + std::to_string(o.particles) + ", expected 1 to 10000, e.g. 30");
-  require(o.hidden >= 1 && o.hidden <= 4096, "hidden " + std::to_string(o.hidden) + ", expected 1 to 4096, e.g. 64");
-  require(o.embedding >= 1 && o.embedding <= 4096,
-          "embedding " + std::to_string(o.embedding) + ", expected 1 to 4096, e.g. 64");
-  require(o.eps > 0 && o.eps <= 5, "eps " + std::to_string(o.eps) + ", expected a number above 0, at most 5, e.g. 0.1");
-  require(o.alpha >= 0 && o.alpha <= 1, "alpha " + std::to_string(o.alpha) + ", expected 0 to 1, e.g. 0.5");
+void PfRnnOptions::check() const {
+  const RangeCheck require("PF-RNN");
+  require(particles >= 1 && particles <= 10'000, "particles", double(particles), "1 to 10000, e.g. 30");
+  require(hidden >= 1 && hidden <= 4096, "hidden", double(hidden), "1 to 4096, e.g. 64");
+  require(embedding >= 1 && embedding <= 4096, "embedding", double(embedding), "1 to 4096, e.g. 64");
+  require(eps > 0 && eps <= 5, "eps", eps, "a number above 0, at most 5, e.g. 0.1");
+  require(alpha >= 0 && alpha <= 1, "alpha", alpha, "0 to 1, e.g. 0.5");
 }
 
 PfCandidate::PfCandidate(const PfRnnOptions& options) : kind_(options.normalisation) {
@@ -115,7 +111,7 @@ torch::Tensor PfCandidate::forward(const torch::Tensor& mean, const torch::Tenso
 }
 
 PfRnn::PfRnn(const PfRnnOptions& options, Stream& rng) : options_(options) {
-  validate(options_);
+  options_.check();
   const long h = options_.hidden, e = options_.embedding;
   const bool lstm = options_.cell == PfCell::lstm;
   embed_ = register_module("embed", linear(feature_count(), first_layer, rng));

@@ -57,11 +57,10 @@ struct PfRnnOptions {
   bool one_hot_actions = true;
 
   static PfRnnOptions published(double eps);
+  /// Throws InputError where an option is out of range.
+  void check() const;
   friend bool operator==(const PfRnnOptions&, const PfRnnOptions&) = default;
 };
-
-/// Throws InputError where an option is out of range.
-void validate(const PfRnnOptions& options);
 
 /// What a lane sees at one step.
 struct PfSight {

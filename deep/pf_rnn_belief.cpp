@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include <maximin/deep/range_check.hpp>
 #include <maximin/deep/tensors.hpp>
 #include <maximin/gridworld/box_belief.hpp>
 #include <maximin/theory/error.hpp>
@@ -100,15 +101,15 @@ PfBeliefOptions PfBeliefOptions::released() {
   return options;
 }
 
+void PfBeliefOptions::check() const {
+  const RangeCheck require("PF-RNN belief");
+  require(slack >= 0, "slack", slack, "0 or more, e.g. 0.5");
+  require(hull_margin >= 0, "hull_margin", hull_margin, "0 or more, e.g. 0.25");
+}
+
 PfRnnBelief::PfRnnBelief(PfRnnPtr module, const PfBeliefOptions& options)
     : module_(std::move(module)), options_(options), ball_(module_->options().eps) {
-  if (!(options_.slack >= 0)) {
-    throw InputError("PF-RNN belief: slack " + std::to_string(options_.slack) + ", expected 0 or more, e.g. 0.5");
-  }
-  if (!(options_.hull_margin >= 0)) {
-    throw InputError("PF-RNN belief: hull margin " + std::to_string(options_.hull_margin) +
-                     ", expected 0 or more, e.g. 0.25");
-  }
+  options_.check();
   module_->eval();
 }
 

@@ -26,6 +26,8 @@ struct PfBeliefOptions {
   std::uint64_t seed = 1;
 
   static PfBeliefOptions released();
+  /// Throws InputError where an option is out of range.
+  void check() const;
 };
 
 /// The belief of a PF-RNN in many lanes: hidden states are carried, so that a step costs the same at any time. On the

@@ -8,31 +8,12 @@
 
 #include <ATen/CPUGeneratorImpl.h>
 
+#include <maximin/deep/range_check.hpp>
 #include <maximin/deep/tensors.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
 namespace {
-
-void require(bool holds, const std::string& what) {
-  if (!holds) throw InputError("PF-RNN training: " + what);
-}
-
-void validate(const PfTrainingOptions& o, const PfRnnOptions& shape) {
-  require(o.updates >= 0, "updates " + std::to_string(o.updates) + ", expected 0 or more");
-  require(o.batch >= 1, "batch " + std::to_string(o.batch) + ", expected 1 or more, e.g. 64");
-  require(o.window >= 1, "window " + std::to_string(o.window) + ", expected 1 or more, e.g. 10");
-  require(o.horizon >= 1, "horizon " + std::to_string(o.horizon) + ", expected 1 or more, e.g. 100");
-  require(o.particles >= 0, "particles " + std::to_string(o.particles) + ", expected 0 or more, e.g. 8");
-  require(o.actions_drawn >= 1 && o.actions_drawn <= 8,
-          "actions " + std::to_string(o.actions_drawn) + ", expected 1 to 8");
-  require(o.trajectories >= 0, "trajectories " + std::to_string(o.trajectories) + ", expected 0 or more");
-  require(o.learning_rate > 0, "learning rate " + std::to_string(o.learning_rate) + ", expected above 0, e.g. 0.0005");
-  require(o.dropout >= 0 && o.dropout < 1, "dropout " + std::to_string(o.dropout) + ", expected 0 to below 1");
-  require(o.kernel >= 0, "kernel " + std::to_string(o.kernel) + ", expected 0 or more, e.g. 0.25");
-  require(shape.normalisation != PfNormalisation::batch || o.particles == 0 || o.particles == shape.particles,
-          "particles " + std::to_string(o.particles) + ", expected 0 when normalisation is over the batch");
-}
 
 /// The trajectories in step.
 class Lanes {
@@ -154,6 +135,22 @@ double rate_at(long update, const PfTrainingOptions& options) {
 
 }  // namespace
 
+void PfTrainingOptions::check(const PfRnnOptions& shape) const {
+  const RangeCheck require("PF-RNN training");
+  require(updates >= 0, "updates", double(updates), "0 or more");
+  require(batch >= 1, "batch", double(batch), "1 or more, e.g. 64");
+  require(window >= 1, "window", double(window), "1 or more, e.g. 10");
+  require(horizon >= 1, "horizon", double(horizon), "1 or more, e.g. 100");
+  require(particles >= 0, "particles", double(particles), "0 or more, e.g. 8");
+  require(actions_drawn >= 1 && actions_drawn <= 8, "actions_drawn", actions_drawn, "1 to 8");
+  require(trajectories >= 0, "trajectories", double(trajectories), "0 or more");
+  require(learning_rate > 0, "learning_rate", learning_rate, "above 0, e.g. 0.0005");
+  require(dropout >= 0 && dropout < 1, "dropout", dropout, "0 to below 1");
+  require(kernel >= 0, "kernel", kernel, "0 or more, e.g. 0.25");
+  require(shape.normalisation != PfNormalisation::batch || particles == 0 || particles == shape.particles, "particles",
+          double(particles), "0 when normalisation is over the batch");
+}
+
 PfTrainingOptions PfTrainingOptions::published() {
   PfTrainingOptions options;
   options.walk = Walk::random;
@@ -184,7 +181,7 @@ torch::Tensor pf_loss(const PfStep& step, const torch::Tensor& truth, double eps
 
 void train_pf_rnn(PfRnn& module, const PfTrainingOptions& options,
                   const std::function<bool(const PfTrainingProgress&)>& progress) {
-  validate(options, module.options());
+  options.check(module.options());
   module.train();
   at::Generator generator = at::make_generator<at::CPUGeneratorImpl>(options.seed);
   torch::optim::RMSprop optimizer(module.parameters(), torch::optim::RMSpropOptions(options.learning_rate));

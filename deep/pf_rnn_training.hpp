@@ -47,6 +47,8 @@ struct PfTrainingOptions {
   std::uint64_t seed = 1;
 
   static PfTrainingOptions published();
+  /// Throws InputError where an option is out of range, or does not go with the module's.
+  void check(const PfRnnOptions& shape) const;
 };
 
 /// Where the training stands.

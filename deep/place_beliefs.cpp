@@ -6,26 +6,19 @@ namespace maximin::deep {
 
 PlaceBeliefs::PlaceBeliefs(SetBelief kind, const FiniteMdp<double>& mdp, const Perturbation<double>& perturbation,
                            const Places& places)
-    : kind_(kind), places_(&places), states_(perturbation.largest_ball()), fresh_(mdp, perturbation) {}
+    : FilterBeliefs(kind, BeliefFilter<double>(mdp, perturbation), perturbation.largest_ball()), places_(&places) {}
 
-void PlaceBeliefs::resize(Lane lanes) {
-  beliefs_.assign(static_cast<std::size_t>(lanes), fresh_);
-  started_.assign(static_cast<std::size_t>(lanes), 0);
+void PlaceBeliefs::begin(BeliefFilter<double>& filter, Point shown) const {
+  filter.reset(places_->state_at(shown));
 }
 
-const Belief& PlaceBeliefs::advance(BeliefFilter<double>& belief, std::size_t lane, Action action, Point shown) const {
-  const State observation = places_->state_at(shown);
-  const bool remembers = started_[lane] != 0 && kind_ == SetBelief::exact;
-  return remembers ? belief.update(action, observation) : belief.reset(observation);
+void PlaceBeliefs::go_on(BeliefFilter<double>& filter, Action action, Point shown) const {
+  filter.update(action, places_->state_at(shown));
 }
 
-BeliefStates PlaceBeliefs::all_empty(std::size_t lanes) const {
-  const auto n = static_cast<long>(lanes);
-  return {torch::empty({n, states_, 2}), torch::zeros({n, states_})};
-}
-
-void PlaceBeliefs::write(const Belief& belief, BeliefStates& out, std::size_t row) const {
-  const auto k = static_cast<std::size_t>(states_);
+void PlaceBeliefs::write(const BeliefFilter<double>& filter, BeliefStates& out, std::size_t row) const {
+  const Belief& belief = filter.belief();
+  const auto k = static_cast<std::size_t>(states_per_belief());
   float* state = out.states.data_ptr<float>() + 2 * k * row;
   float* weight = out.weights.data_ptr<float>() + k * row;
   std::fill_n(weight, belief.size(), 1.0F / static_cast<float>(belief.size()));
@@ -36,37 +29,9 @@ void PlaceBeliefs::write(const Belief& belief, BeliefStates& out, std::size_t ro
   }
 }
 
-BeliefStates PlaceBeliefs::update(std::span<const Lane> lanes, std::span<const Action> actions,
-                                  std::span<const Point> shown) {
-  BeliefStates out = all_empty(lanes.size());
-  for (std::size_t k = 0; k < lanes.size(); ++k) {
-    const auto l = static_cast<std::size_t>(lanes[k]);
-    write(advance(beliefs_[l], l, actions[k], shown[k]), out, k);
-    started_[l] = 1;
-  }
-  return out;
-}
-
-BeliefStates PlaceBeliefs::peek(std::span<const Lane> lanes, std::span<const Action> actions,
-                                std::span<const Point> shown) const {
-  BeliefStates out = all_empty(lanes.size());
-  for (std::size_t k = 0; k < lanes.size(); ++k) {
-    const auto l = static_cast<std::size_t>(lanes[k]);
-    BeliefFilter<double> probe = beliefs_[l];
-    write(advance(probe, l, actions[k], shown[k]), out, k);
-  }
-  return out;
-}
-
 bool PlaceBeliefs::holds(Lane lane, Point truth) const {
   const Belief& belief = places(lane);
   return std::binary_search(belief.begin(), belief.end(), places_->state_at(truth));
-}
-
-long PlaceBeliefs::empty_intersections() const {
-  long sum = 0;
-  for (const auto& b : beliefs_) sum += b.empty_intersections();
-  return sum;
 }
 
 }  // namespace maximin::deep

@@ -77,6 +77,20 @@ AgentSpec full_recipe(std::string_view kind, std::uint64_t seed) {
     printed.train_attack = "pgd";
     return printed;
   }
+  if (kind == "bp-dqn-released") {
+    AgentSpec released = belief_pessimistic(seed, "pf-lstm");
+    released.aggregator = "min";
+    released.random_actions = 0;
+    released.target_order = TargetOrder::aggregate_of_max;
+    released.particle_filter = PfRnnOptions::published(released.eps);
+    released.particle_filter_training = PfTrainingOptions::published();
+    released.belief_trajectories = 10'000;
+    released.particle_filter_belief = PfBeliefOptions::released();
+    released.training.averaged_share = 0;
+    released.training.bootstrap = BootstrapBelief::current;
+    released.train_attack = "pgd-released";
+    return released;
+  }
   AgentSpec noisy = belief_pessimistic(seed, "pf-lstm");  // "bp-dqn-noisy"
   noisy.belief_trajectories = 30;
   noisy.start_from.clear();
@@ -100,8 +114,9 @@ void shorten(TrainOptions& o, long frames) {
 }  // namespace
 
 const std::vector<std::string>& agent_kinds() {
-  static const std::vector<std::string> kinds{"dqn",    "sa-dqn",      "wocar-dqn",  "radial-dqn",     "car-dqn",
-                                              "bp-dqn", "bp-dqn-lstm", "bp-dqn-gru", "bp-dqn-printed", "bp-dqn-noisy"};
+  static const std::vector<std::string> kinds{
+      "dqn",         "sa-dqn",     "wocar-dqn",      "radial-dqn",      "car-dqn",     "bp-dqn",
+      "bp-dqn-lstm", "bp-dqn-gru", "bp-dqn-printed", "bp-dqn-released", "bp-dqn-noisy"};
   return kinds;
 }
 

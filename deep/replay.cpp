@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -16,13 +17,10 @@ namespace {
 // 8 GiB of places in beliefs.
 constexpr long most_states = 1L << 30U;
 
-void require(bool holds, const char* field, double value, const char* expected) {
-  if (!holds) throw InputError(fmt::format("replay: {} is {}, expected {}", field, value, expected));
-}
-
 }  // namespace
 
 void ReplayOptions::check() const {
+  const RangeCheck require("replay");
   require(capacity >= 1 && capacity <= 10'000'000, "capacity", static_cast<double>(capacity), "1 to 10 million");
   require(alpha >= 0 && alpha <= 4, "alpha", alpha, "0 to 4");
   require(beta_start >= 0 && beta_start <= 1, "beta_start", beta_start, "0 to 1");

@@ -1,5 +1,7 @@
 #include <maximin/deep/set_beliefs.hpp>
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <maximin/deep/tensors.hpp>
@@ -19,66 +21,20 @@ BeliefStates ObservedState::peek(std::span<const Lane>, std::span<const Action>,
 }
 
 SetBeliefs::SetBeliefs(SetBelief kind, const ObservationBall& ball, long states)
-    : kind_(kind), states_(states), fresh_(ball) {
+    : FilterBeliefs(kind, BoxBelief(ball), states) {
   if (states < 1 || states > 4096) {
     throw InputError(fmt::format("belief: {} states, expected 1 to 4096", states));
   }
 }
 
-void SetBeliefs::resize(Lane lanes) {
-  beliefs_.assign(static_cast<std::size_t>(lanes), fresh_);
-  started_.assign(static_cast<std::size_t>(lanes), 0);
-}
-
-void SetBeliefs::advance(BoxBelief& belief, bool started, Action action, Point shown) const {
-  if (started && kind_ == SetBelief::exact) {
-    belief.update(action, shown);
-  } else {
-    belief.reset(shown);
+void SetBeliefs::write(const BoxBelief& filter, BeliefStates& out, std::size_t row) const {
+  const auto k = static_cast<std::size_t>(states_per_belief());
+  std::fill_n(out.weights.data_ptr<float>() + k * row, k, 1.0F / static_cast<float>(k));
+  float* state = out.states.data_ptr<float>() + 2 * k * row;
+  for (const Point& p : filter.belief().spread(static_cast<int>(k))) {
+    *state++ = static_cast<float>(p.x);
+    *state++ = static_cast<float>(p.y);
   }
-}
-
-BeliefStates SetBeliefs::all_empty(std::size_t lanes) const {
-  const auto n = static_cast<long>(lanes);
-  return {torch::empty({n, states_, 2}), torch::full({n, states_}, 1.0 / static_cast<double>(states_))};
-}
-
-void SetBeliefs::write(const BoxUnion& set, torch::Tensor& states, std::size_t row) const {
-  float* out = states.data_ptr<float>() + row * static_cast<std::size_t>(2 * states_);
-  for (const Point& p : set.spread(static_cast<int>(states_))) {
-    *out++ = static_cast<float>(p.x);
-    *out++ = static_cast<float>(p.y);
-  }
-}
-
-BeliefStates SetBeliefs::update(std::span<const Lane> lanes, std::span<const Action> actions,
-                                std::span<const Point> shown) {
-  BeliefStates out = all_empty(lanes.size());
-  for (std::size_t k = 0; k < lanes.size(); ++k) {
-    const auto l = static_cast<std::size_t>(lanes[k]);
-    advance(beliefs_[l], started_[l] != 0, actions[k], shown[k]);
-    started_[l] = 1;
-    write(beliefs_[l].belief(), out.states, k);
-  }
-  return out;
-}
-
-BeliefStates SetBeliefs::peek(std::span<const Lane> lanes, std::span<const Action> actions,
-                              std::span<const Point> shown) const {
-  BeliefStates out = all_empty(lanes.size());
-  for (std::size_t k = 0; k < lanes.size(); ++k) {
-    const auto l = static_cast<std::size_t>(lanes[k]);
-    BoxBelief probe = beliefs_[l];
-    advance(probe, started_[l] != 0, actions[k], shown[k]);
-    write(probe.belief(), out.states, k);
-  }
-  return out;
-}
-
-long SetBeliefs::empty_intersections() const {
-  long sum = 0;
-  for (const BoxBelief& b : beliefs_) sum += b.empty_intersections();
-  return sum;
 }
 
 }  // namespace maximin::deep

@@ -5,27 +5,18 @@
 
 namespace maximin::deep {
 
-void SureAgent::forget(Lane lane) {
-  InLane& in = lanes_[static_cast<std::size_t>(lane)];
-  in.agent.forget();
-  in.started = false;
-}
-
 void SureAgent::act(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Stream> streams,
                     std::span<Action> actions) {
   for (std::size_t k = 0; k < lanes.size(); ++k) {
     const auto l = static_cast<std::size_t>(lanes[k]);
-    InLane& in = lanes_[l];
-    actions[k] = in.started ? in.agent.act(shown[k], streams[l]) : in.agent.begin(shown[k], streams[l]);
-    in.started = true;
-    in.last = actions[k];
+    actions[k] = lanes_[l].act(shown[k], streams[l]);
   }
 }
 
 Mind SureAgent::mind(Lane lane) const {
-  const InLane& in = lanes_[static_cast<std::size_t>(lane)];
-  if (!in.started) return {};
-  Mind mind{true, in.last, {}, belief(lane).hull()};
+  const HullAgent& in = lanes_[static_cast<std::size_t>(lane)];
+  if (!in.started()) return {};
+  Mind mind{true, in.last_action(), {}, belief(lane).hull()};
   const double area = belief(lane).area();
   for (const Box& box : belief(lane).boxes()) {
     const double share = box.area() / area;
@@ -37,19 +28,19 @@ Mind SureAgent::mind(Lane lane) const {
 
 long SureAgent::empty_intersections() const {
   long sum = 0;
-  for (const InLane& in : lanes_) sum += in.agent.belief_model().empty_intersections();
+  for (const HullAgent& in : lanes_) sum += in.belief_model().empty_intersections();
   return sum;
 }
 
 void SureAgent::would_do(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Action> actions) const {
   for (std::size_t k = 0; k < lanes.size(); ++k) {
-    const BoxUnion belief = lanes_[static_cast<std::size_t>(lanes[k])].agent.would_believe(shown[k]);
+    const BoxUnion belief = lanes_[static_cast<std::size_t>(lanes[k])].would_believe(shown[k]);
     actions[k] = control_->covers(belief) ? control_->choice(belief).action : Action(0);
   }
 }
 
 double SureAgent::would_be_sure_of(Lane lane, Point shown) const {
-  const BoxUnion belief = lanes_[static_cast<std::size_t>(lane)].agent.would_believe(shown);
+  const BoxUnion belief = lanes_[static_cast<std::size_t>(lane)].would_believe(shown);
   return control_->covers(belief) ? control_->choice(belief).value : -std::numeric_limits<double>::infinity();
 }
 

@@ -17,8 +17,8 @@ class SureAgent final : public GridAgent {
  public:
   explicit SureAgent(const HullControl& control) : control_(&control) {}
 
-  void resize(Lane lanes) override { lanes_.assign(static_cast<std::size_t>(lanes), {HullAgent(*control_), false, 0}); }
-  void forget(Lane lane) override;
+  void resize(Lane lanes) override { lanes_.assign(static_cast<std::size_t>(lanes), HullAgent(*control_)); }
+  void forget(Lane lane) override { lanes_[static_cast<std::size_t>(lane)].forget(); }
   /// Takes no random numbers as long as observations keep to the ball.
   void act(std::span<const Lane> lanes, std::span<const Point> shown, std::span<Stream> streams,
            std::span<Action> actions) override;
@@ -36,20 +36,12 @@ class SureAgent final : public GridAgent {
   /// shown.
   double would_be_sure_of(Lane lane, Point shown) const;
   /// What the lane's history leaves possible.
-  const BoxUnion& belief(Lane lane) const {
-    return lanes_[static_cast<std::size_t>(lane)].agent.belief_model().belief();
-  }
+  const BoxUnion& belief(Lane lane) const { return lanes_[static_cast<std::size_t>(lane)].belief_model().belief(); }
   const HullControl& control() const { return *control_; }
 
  private:
-  struct InLane {
-    HullAgent agent;
-    bool started;
-    Action last = 0;
-  };
-
   const HullControl* control_;
-  std::vector<InLane> lanes_;
+  std::vector<HullAgent> lanes_;
 };
 
 /// The attack on it that knows most: of the corners, the edges' middles and the centre of the ball and `random` points

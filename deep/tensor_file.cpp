@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -15,6 +14,7 @@
 #include <fmt/ranges.h>
 #include <zlib.h>
 
+#include <maximin/models/files/input_file.hpp>
 #include <maximin/models/files/output_file.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -26,6 +26,8 @@ static_assert(std::endian::native == std::endian::little, "numbers are written a
 constexpr std::string_view magic = "maximin-tensors 1\n";
 constexpr std::string_view any_version = "maximin-tensors ";
 constexpr std::size_t checksum_bytes = 4;
+/// A replay memory of a million beliefs is a tenth of it.
+constexpr std::size_t most_bytes = std::size_t{1} << 34U;
 
 constexpr std::array<std::pair<const char*, torch::ScalarType>, 4> types{
     {{"float32", torch::kFloat}, {"float64", torch::kDouble}, {"int64", torch::kLong}, {"uint8", torch::kByte}}};
@@ -47,22 +49,6 @@ std::optional<torch::ScalarType> type_named(const std::string& text) {
 std::uint32_t crc_of(std::string_view bytes) {
   uLong crc = crc32_z(0, nullptr, 0);
   return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
-std::string whole(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(fmt::format("{}: is a folder, expected a file", path.string()));
-  }
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
-    throw InputError(fmt::format("{}: is a device or a pipe, expected a file", path.string()));
-  }
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || in.bad()) {
-    throw InputError(fmt::format("{}: cannot be read, expected a file that exists", path.string()));
-  }
-  return bytes;
 }
 
 /// The JSON of the heading. Deep nesting would overflow the stack of whoever copies or prints it.
@@ -152,7 +138,10 @@ TensorFile read_tensor_file(const std::filesystem::path& path, const std::string
         why.begin(), why.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
     return InputError(fmt::format("{}: {:.200}", path.string(), why));
   };
-  const std::string bytes = whole(path);
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::is_other(status)) throw refuse("is a device or a pipe, expected a file");
+  const std::string bytes = file_bytes(path, most_bytes, fmt::format("a file of kind '{}'", kind));
   if (!bytes.starts_with(any_version)) {
     throw refuse(fmt::format("no file of this program, expected one that begins with '{}'", any_version));
   }

@@ -42,16 +42,10 @@ std::optional<TrainedAgent> finished(const AgentSpec& spec, const fs::path& path
 /// A particle filter for the belief, trained in one go: it takes minutes, and the same seed gives the same filter. What
 /// follows keeps it in its checkpoints. False where the hook stopped it.
 bool train_particle_filter(TrainedAgent& agent, bool quick, const TrainingHooks& hooks) {
-  PfRnnOptions shape;
-  shape.cell = agent.spec.belief.starts_with("pf-gru") ? PfCell::gru : PfCell::lstm;
-  shape.eps = agent.spec.eps;
-  PfTrainingOptions options;
-  options.seed = agent.spec.training.seed;
-  options.trajectories = agent.spec.belief_trajectories;
+  PfTrainingOptions options = training_of_filter(agent.spec);
   if (quick) options.updates = 200;
   const Stopwatch watch;
-  Stream weights(options.seed, (std::uint64_t{1} << 62U) + 2);
-  agent.particle_filter = std::make_shared<PfRnn>(shape, weights);
+  agent.particle_filter = untrained_filter(agent.spec);
   const long frames_per_update = options.batch * options.window;
   if (hooks.begin) hooks.begin("belief model of " + agent.spec.name(), options.updates * frames_per_update);
   bool stopped = false;

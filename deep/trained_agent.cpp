@@ -1,19 +1,11 @@
 #include <maximin/deep/trained_agent.hpp>
 
-#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <maximin/deep/losses/car_loss.hpp>
-#include <maximin/deep/losses/radial_loss.hpp>
-#include <maximin/deep/losses/sa_loss.hpp>
-#include <maximin/deep/losses/td_loss.hpp>
-#include <maximin/deep/losses/wocar_loss.hpp>
 #include <maximin/deep/mean_state.hpp>
-#include <maximin/deep/pf_rnn_belief.hpp>
-#include <maximin/deep/pf_rnn_file.hpp>
 #include <maximin/deep/report/json_fields.hpp>
 #include <maximin/deep/set_beliefs.hpp>
 #include <maximin/deep/tensor_file.hpp>
@@ -28,41 +20,19 @@ Stream weights_stream(std::uint64_t seed, std::uint64_t which) {
   return Stream(seed, (std::uint64_t{1} << 62U) + which);
 }
 
-/// The losses with their papers' forms but for these: Radial-DQN, CAR-DQN and WocaR-DQN have CROWN's bounds, for with
-/// intervals alone they unlearn the Gridworld, and Radial-DQN's overlap is of merged bounds of differences.
-template <class Options>
-Options baseline_options(const AgentSpec& spec) {
-  Options o;
-  o.td.discount = spec.discount;
-  o.td.double_q = spec.double_q;
-  o.ramp.eps = spec.eps;
-  return o;
-}
-
 std::shared_ptr<Loss> make_loss(const AgentSpec& spec) {
-  if (spec.loss == "sa") return std::make_shared<SaLoss>(baseline_options<SaLossOptions>(spec));
-  if (spec.loss == "radial") {
-    auto o = baseline_options<RadialLossOptions>(spec);
-    o.bounds = BoundMethod::crown;
-    o.overlap = RadialOverlap::merged_difference;
-    return std::make_shared<RadialLoss>(o);
-  }
-  if (spec.loss == "car") {
-    auto o = baseline_options<CarLossOptions>(spec);
-    o.bounds = BoundMethod::crown;
-    return std::make_shared<CarLoss>(o);
-  }
+  if (spec.loss == "sa") return std::make_shared<SaLoss>(options_of_loss(spec, spec.sa));
+  if (spec.loss == "radial") return std::make_shared<RadialLoss>(options_of_loss(spec, spec.radial));
+  if (spec.loss == "car") return std::make_shared<CarLoss>(options_of_loss(spec, spec.car));
   if (spec.loss == "wocar") {
-    auto o = baseline_options<WocarLossOptions>(spec);
-    o.reach_bounds = o.robust_bounds = BoundMethod::crown;
     Stream rng = weights_stream(spec.training.seed, 1);
-    return std::make_shared<WocarLoss>(o, spec.network, rng);
+    return std::make_shared<WocarLoss>(options_of_loss(spec, spec.wocar), spec.network, rng);
   }
   TdLossOptions o;
   o.discount = spec.discount;
   o.aggregator = aggregator_named(spec.aggregator);
   o.double_q = spec.double_q;
-  if (spec.target_order == "aggregate-of-max") o.order = TargetOrder::aggregate_of_max;
+  o.order = spec.target_order;
   return std::make_shared<TdLoss>(o);
 }
 
@@ -74,7 +44,7 @@ std::filesystem::path times_file(std::filesystem::path agent) {
 }  // namespace
 
 Acting acting_of(const AgentSpec& spec) {
-  return {spec.belief, spec.belief_states, spec.aggregator, spec.random_actions};
+  return {spec.belief, spec.belief_states, spec.aggregator, spec.random_actions, spec.particle_filter_belief};
 }
 
 Acting acting_of(const AgentSpec& spec, const ActingChange& change) {
@@ -105,7 +75,7 @@ std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const 
     throw InputError(
         fmt::format("belief: {}, expected {}, which this agent's particle filter is", acting.belief, cell));
   }
-  return std::make_shared<PfRnnBelief>(particle_filter);
+  return std::make_shared<PfRnnBelief>(particle_filter, acting.filter_belief);
 }
 
 std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Acting& acting) {
@@ -124,17 +94,20 @@ TrainedAgent untrained(const AgentSpec& spec) {
   return {spec, std::make_shared<QNetwork>(spec.network, rng), make_loss(spec), nullptr};
 }
 
+PfRnnPtr untrained_filter(const AgentSpec& spec) {
+  Stream rng = weights_stream(spec.training.seed, 2);
+  return std::make_shared<PfRnn>(shape_of_filter(spec), rng);
+}
+
 void put_particle_filter(TensorFile& file, const TrainedAgent& agent) {
   if (!agent.particle_filter) return;
-  std::ostringstream bytes;
-  save_pf_rnn(bytes, *agent.particle_filter);
-  file.tensors["particle_filter"] = tensor_of_bytes(bytes.str());
+  put_module(file, "particle_filter", *agent.particle_filter);
 }
 
 void get_particle_filter(const TensorFile& file, TrainedAgent& agent) {
   if (!agent.spec.has_particle_filter()) return;
-  std::istringstream bytes(bytes_of_tensor(file.at("particle_filter")));
-  agent.particle_filter = load_pf_rnn(bytes, "particle_filter");
+  agent.particle_filter = untrained_filter(agent.spec);
+  get_module(file, "particle_filter", *agent.particle_filter);
 }
 
 void write_agent(const std::filesystem::path& path, const TrainedAgent& agent) {

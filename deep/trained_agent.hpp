@@ -37,6 +37,7 @@ struct Acting {
   long belief_states = 32;
   std::string aggregator;
   double random_actions = 0;
+  PfBeliefOptions filter_belief;  ///< of a particle filter
 };
 Acting acting_of(const AgentSpec& spec);
 
@@ -65,8 +66,11 @@ TrainedAgent untrained(const AgentSpec& spec);
 void write_agent(const std::filesystem::path& path, const TrainedAgent& agent);
 TrainedAgent read_agent(const std::filesystem::path& path);
 
-/// The particle filter as tensor "particle_filter", where the agent has one; and back, where its specification asks for
-/// one. Throws InputError as tensor files do.
+/// Its particle filter before training.
+PfRnnPtr untrained_filter(const AgentSpec& spec);
+
+/// The particle filter's tensors, where the agent has one; and back, where its specification asks for one. Throws
+/// InputError as tensor files do.
 void put_particle_filter(TensorFile& file, const TrainedAgent& agent);
 void get_particle_filter(const TensorFile& file, TrainedAgent& agent);
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -21,13 +22,10 @@ Stream stream_of(std::uint64_t seed, long stretch, long which) {
 }
 constexpr long replay_stream = 1L << 19;
 
-void require(bool holds, const char* field, double value, const char* expected) {
-  if (!holds) throw InputError(fmt::format("training: {} is {}, expected {}", field, value, expected));
-}
-
 }  // namespace
 
 void TrainOptions::check() const {
+  const RangeCheck require("training");
   require(frames >= 1, "frames", double(frames), "at least 1");
   require(lanes >= 1 && lanes <= 4096, "lanes", lanes, "1 to 4096");
   require(horizon >= 1, "horizon", double(horizon), "at least 1");

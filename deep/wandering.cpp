@@ -65,17 +65,6 @@ double wave(const double (&w)[3], Point p) {
 
 }  // namespace
 
-std::string_view name(Walk walk) {
-  constexpr std::array<std::string_view, 4> names{"random", "persistent", "purposeful", "mixed"};
-  return names.at(static_cast<std::size_t>(walk));
-}
-
-std::string_view name(Deception deception) {
-  constexpr std::array<std::string_view, deceptions + 1> names{
-      "none", "uniform", "corner", "flipping", "drifting", "lagging", "leading", "beckoning", "field", "mixed"};
-  return names.at(static_cast<std::size_t>(deception));
-}
-
 void Wanderer::begin(Stream& rng) {
   now_ = walk_ == Walk::mixed ? static_cast<Walk>(rng.below(3)) : walk_;
   constexpr std::array<double, 3> keeps{0.5, 0.8, 0.95};

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <string_view>
 
 #include <maximin/gridworld/gridworld.hpp>
 #include <maximin/gridworld/observation_ball.hpp>
@@ -37,8 +37,13 @@ enum class Deception : std::uint8_t {
 inline constexpr int deceptions = 9;  ///< all but mixed
 
 /// Names as in the enumerations.
-std::string_view name(Walk walk);
-std::string_view name(Deception deception);
+constexpr auto words_of(Walk) {
+  return std::to_array({"random", "persistent", "purposeful", "mixed"});
+}
+constexpr auto words_of(Deception) {
+  return std::to_array(
+      {"none", "uniform", "corner", "flipping", "drifting", "lagging", "leading", "beckoning", "field", "mixed"});
+}
 
 /// Walks one episode after another.
 class Wanderer {

@@ -73,10 +73,18 @@ class HullAgent {
   /// Before an episode: whatever comes next is a first observation.
   void forget() { started_ = false; }
   Action begin(Point shown, Stream& rng) {
-    started_ = true;
-    return decide(belief_.reset(shown), rng);
+    forget();
+    return act(shown, rng);
   }
-  Action act(Point shown, Stream& rng) { return decide(belief_.update(last_, shown), rng); }
+  Action act(Point shown, Stream& rng) {
+    const BoxUnion& belief = started_ ? belief_.update(last_, shown) : belief_.reset(shown);
+    started_ = true;
+    return decide(belief, rng);
+  }
+
+  /// Whether it has seen something of this episode, and what it did last.
+  bool started() const { return started_; }
+  Action last_action() const { return last_; }
 
   /// The belief that an observation would lead to now.
   BoxUnion would_believe(Point shown) const;

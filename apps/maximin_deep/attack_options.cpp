@@ -25,6 +25,18 @@ void add_attack_options(CLI::App& sub, AttackedAgent& o) {
   sub.add_flag("--quick", o.quick, "Learned attacks learn for seconds");
 }
 
+namespace {
+
+/// The agent file that an attack on the whole defence goes by: what is named, else the vanilla agent of the same seed
+/// beside the agent, if there is one.
+std::filesystem::path judge_of(const AttackedAgent& o, const deep::AgentSpec& spec) {
+  if (!o.judge.empty()) return o.judge;
+  std::filesystem::path vanilla = o.file.parent_path() / fmt::format("dqn-seed{}.agent", spec.training.seed);
+  return std::filesystem::exists(vanilla) ? vanilla : std::filesystem::path();
+}
+
+}  // namespace
+
 Match prepare_match(const AttackedAgent& o) {
   Match match;
   match.trained = std::make_unique<deep::TrainedAgent>(deep::read_agent(o.file));
@@ -37,11 +49,10 @@ Match prepare_match(const AttackedAgent& o) {
   const std::shared_ptr<deep::ActionValueModule> values = match.trained->values_in_rewards();
   deep::AttackTarget target{values, values, deep::identity_of(*match.trained, match.acting), spec.training.reward_scale,
                             [&] { return deep::make_agent(*match.trained, match.acting); }};
-  const std::filesystem::path vanilla = o.file.parent_path() / fmt::format("dqn-seed{}.agent", spec.training.seed);
-  if (!o.judge.empty()) {
-    target.judge = deep::read_agent(o.judge).values_in_rewards();
-  } else if (std::filesystem::exists(vanilla)) {
-    target.judge = deep::read_agent(vanilla).values_in_rewards();
+  if (deep::attack_named(o.attack).knows == deep::Knowledge::defence) {
+    const std::filesystem::path judge = judge_of(o, spec);
+    if (!judge.empty()) target.judge = deep::read_agent(judge).values_in_rewards();
+    match.judge = judge.empty() ? "the agent's own values" : judge.string();
   }
   deep::AttackSetting setting;
   setting.name = o.attack;

@@ -33,6 +33,7 @@ struct Match {
   deep::Acting acting;
   std::unique_ptr<deep::BeliefAgent> agent;
   std::shared_ptr<deep::GridAttack> attack;
+  std::string judge;  ///< whose values an attack on the whole defence goes by; empty where the attack is none
   double eps = 0;
 };
 

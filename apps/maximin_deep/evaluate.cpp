@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <maximin/apps/common/json_output.hpp>
 #include <maximin/apps/common/option_checks.hpp>
@@ -65,6 +67,7 @@ int evaluate(const EvaluateCommand& command) {
       .column("truth in belief");
   table.column("belief area", Align::point).column("empty").column("ms/step", Align::point);
   Json all = Json::array();
+  std::set<std::string> judges;
   for (const auto& file : command.files) {
     for (const std::string& attack : command.attacks) {
       AttackedAgent options = command.options;
@@ -81,9 +84,14 @@ int evaluate(const EvaluateCommand& command) {
                  fmt::format("{:.1f}", half), std::to_string(e.gold), std::to_string(e.bomb),
                  fmt::format("{:.1f} %", 100 * e.truth_in_belief), fmt::format("{:.3f}", e.belief_size),
                  std::to_string(e.empty_intersections), fmt::format("{:.3f}", 1000 * e.seconds / double(e.steps))});
+      if (!match.judge.empty()) judges.insert(match.judge);
       all.push_back({{"agent", name},
+                     {"belief", match.acting.belief},
+                     {"aggregator", match.acting.aggregator},
+                     {"random_actions", match.acting.random_actions},
                      {"attack", attack},
                      {"eps", match.eps},
+                     {"judge", match.judge.empty() ? Json() : Json(match.judge)},
                      {"mean_return", estimate.mean},
                      {"half_width_95", half},
                      {"gold", share(e.gold, command.episodes)},
@@ -103,6 +111,9 @@ int evaluate(const EvaluateCommand& command) {
   print(table.text());
   print(fmt::format("{} episodes each; +- is a 95 percent interval over episodes of these very networks.\n",
                     command.episodes));
+  if (!judges.empty()) {
+    print(fmt::format("Attacks on the whole defence go by the values of {}.\n", fmt::join(judges, ", ")));
+  }
   return ExitCode::success;
 }
 

@@ -67,6 +67,7 @@ class TableMaker {
 
   int run() {
     deep::ResultFile file = deep::ResultFile::open(command_.output / (command_.kind + ".json"), planned_table());
+    expect_runs_of_this_table(file.table());
     train_all();
     evaluate_all(file);
     if (!stop_) write_pages(file.table());
@@ -78,6 +79,26 @@ class TableMaker {
   /// Of the vanilla agent by whose values attacks on the whole defence go: none that a training began with or was
   /// attacked by.
   static std::uint64_t judge_seed(std::uint64_t seed) { return 1'000'000 + seed; }
+
+  static std::uint64_t evaluation_seed(std::uint64_t training_seed) { return 1000 + training_seed; }
+
+  /// The file's configuration is this table's: so must its runs be.
+  void expect_runs_of_this_table(const deep::ResultTable& table) const {
+    for (const deep::ResultBlock& block : table.blocks) {
+      for (const deep::ResultCell& cell : block.cells) {
+        for (const deep::SeedRun& run : cell.runs) {
+          if (run.returns.size() == static_cast<std::size_t>(command_.episodes) &&
+              run.evaluation_seed == evaluation_seed(run.training_seed)) {
+            continue;
+          }
+          throw InputError(fmt::format("{}.json: {} / {}: a run of {} episodes from seed {}, expected {} from {}",
+                                       (command_.output / command_.kind).string(), cell.agent, cell.attack,
+                                       run.returns.size(), run.evaluation_seed, command_.episodes,
+                                       evaluation_seed(run.training_seed)));
+        }
+      }
+    }
+  }
 
   /// Its radius is never asked for.
   deep::AgentSpec vanilla_spec(std::uint64_t seed) const { return deep::recipe("dqn", 0, seed, command_.effort()); }
@@ -220,14 +241,13 @@ class TableMaker {
     const auto start = std::chrono::steady_clock::now();
     const Match match = prepare(cell, seed);
     if (!match.attack) return std::nullopt;
-    const std::uint64_t evaluation_seed = 1000 + seed;
     const deep::AgentEvaluation e = deep::evaluate_agent(*match.agent, *match.attack, ObservationBall(cell.attack_eps),
-                                                         command_.episodes, evaluation_seed);
+                                                         command_.episodes, evaluation_seed(seed));
     measured.measures = {{"truth in belief", e.truth_in_belief},
                          {"belief area", e.belief_size},
                          {"empty intersections", static_cast<double>(e.empty_intersections)}};
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return deep::SeedRun{seed, evaluation_seed, e.returns, seconds};
+    return deep::SeedRun{seed, evaluation_seed(seed), e.returns, seconds};
   }
 
   std::vector<deep::TrainingCurve> curves() const {
@@ -257,7 +277,7 @@ class TableMaker {
       const Match match = prepare(cell, command_.seed(0));
       if (!match.attack) continue;
       deep::EpisodeTrace trace = deep::trace_episode(*match.agent, *match.attack, ObservationBall(cell.attack_eps),
-                                                     1000 + command_.seed(0), 3);
+                                                     evaluation_seed(command_.seed(0)), 3);
       trace.agent = cell.cell.agent;
       trace.attack = cell.cell.attack;
       trace.training_seed = command_.seed(0);

@@ -236,8 +236,11 @@ void add_strongest(deep::ResultTable& table) {
   deep::ResultBlock out;
   out.name = strongest_block;
   out.note = "For each agent and radius the attack of the block above that left it least on average.";
+  std::size_t most = 0;
+  for (const deep::ResultCell& cell : adaptive->cells) most = std::max(most, cell.runs.size());
   for (const deep::ResultCell& cell : adaptive->cells) {
-    if (cell.runs.empty()) continue;
+    // Means over other seeds are no match.
+    if (most == 0 || cell.runs.size() < most) continue;
     deep::ResultCell* best = out.find(cell.agent, "strongest", cell.eps);
     if (best && deep::estimate(best->runs).mean <= deep::estimate(cell.runs).mean) continue;
     if (!best) best = &out.cells.emplace_back();

@@ -4,6 +4,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -33,6 +34,7 @@ struct TrainCommand {
   std::filesystem::path config;
   std::string device = "cpu";
   int jobs = 1;
+  std::vector<std::string> given;  ///< fields of a specification that the command line says itself
   bool quick = false, print_config = false, json = false;
   long frames = 0;
 
@@ -54,6 +56,15 @@ std::vector<deep::AgentSpec> planned(const TrainCommand& command) {
   const bool configured = !command.config.empty();
   const nlohmann::ordered_json config =
       configured ? deep::read_json_file(command.config, "JSON with fields of a specification") : Json::object();
+  for (const std::string& field : command.given) {
+    if (!config.is_object() || !config.contains(Json::json_pointer(field))) continue;
+    throw InputError(fmt::format("{}: sets {}, which an option sets too, expected one of them", command.config.string(),
+                                 field.substr(1)));
+  }
+  if (command.seed + static_cast<std::uint64_t>(command.seeds - 1) < command.seed) {
+    throw InputError(
+        fmt::format("--seed, --seeds: {} seeds from {} on, expected seeds below 2^64", command.seeds, command.seed));
+  }
   for (int k = 0; k < command.seeds; ++k) {
     for (const std::string& kind : command.kinds) {
       deep::AgentSpec spec =
@@ -128,7 +139,13 @@ void add_train(CLI::App& app, Task& task) {
       "  maximin_deep train dqn --quick\n"
       "  maximin_deep train bp-dqn --eps 0.5 --seeds 3 --jobs 2\n"
       "  maximin_deep train bp-dqn --print-config > mine.json      then: --config mine.json");
-  sub->callback([command, &task] { task = [command] { return train(*command); }; });
+  sub->callback([command, sub, &task] {
+    for (const auto& [option, field] : {std::pair{"--eps", "/eps"}, std::pair{"--seed", "/training/seed"},
+                                        std::pair{"--frames", "/training/frames"}}) {
+      if (sub->count(option) > 0) command->given.emplace_back(field);
+    }
+    task = [command] { return train(*command); };
+  });
 }
 
 }  // namespace maximin::apps

@@ -43,6 +43,11 @@ void expect_files_apart(const WatchCommand& command) {
 
 int watch(const WatchCommand& command) {
   expect_files_apart(command);
+  // Before the work: an episode may take minutes where an attack has to learn first.
+  for (const std::filesystem::path& file : {command.output, command.trace}) {
+    if (command.force || file.empty() || !std::filesystem::exists(file)) continue;
+    throw InputError(file.string() + ": exists, expected a new file name, or --force to replace it");
+  }
   const Match match = prepare_match(command.options);
   deep::EpisodeTrace trace =
       deep::trace_episode(*match.agent, *match.attack, ObservationBall(match.eps), command.seed, command.episode);
@@ -50,9 +55,6 @@ int watch(const WatchCommand& command) {
   trace.attack = command.options.attack;
   trace.training_seed = match.trained->spec.training.seed;
   const Overwrite overwrite = command.force ? Overwrite::replace : Overwrite::refuse;
-  if (!command.force && !command.trace.empty() && std::filesystem::exists(command.trace)) {
-    throw InputError(command.trace.string() + ": exists, expected a new file name, or --force to replace it");
-  }
   write_file(command.output, deep::animated_svg(trace), overwrite);
   if (!command.trace.empty()) deep::write_trace(command.trace, trace);
   print(fmt::format("{}: {} under {}, eps {:g}, episode {}: {}\n", command.output.string(), trace.agent, trace.attack,

@@ -97,9 +97,12 @@ void Director::load(const TensorFile& file) {
   nlohmann::ordered_json expected = about(), found = file.about;
   const std::string play = found.value("play", "");
   found.erase("play");
-  if (found != expected) {
-    throw InputError(fmt::format("attacker: is {}, expected {}", found.dump(), expected.dump()));
+  for (const auto& [what, value] : expected.items()) {
+    const nlohmann::ordered_json there = found.contains(what) ? found[what] : nlohmann::ordered_json();
+    if (there != value)
+      throw InputError(fmt::format("attacker: {} is {}, expected {}", what, there.dump(), value.dump()));
   }
+  if (found.size() > expected.size()) throw InputError("attacker: more than an attacker has, expected one as written");
   if (play != "greedy" && play != "sampled") {
     throw InputError(fmt::format("attacker: play is '{}', expected greedy or sampled", play));
   }

@@ -5,15 +5,12 @@
 
 #include <fmt/format.h>
 
+#include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 #include <maximin/theory/rollout_in_step.hpp>
 
 namespace maximin::deep {
 namespace {
-
-void require(bool holds, const char* field, double value, const char* expected) {
-  if (!holds) throw InputError(fmt::format("director training: {} is {}, expected {}", field, value, expected));
-}
 
 // Streams of one training: lane l in stretch n draws from number n * 2^20 + l, the shuffles of all stretches from
 // 2^63, and the evaluation, of another seed, shares none.
@@ -153,6 +150,7 @@ class Champion {
 }  // namespace
 
 void DirectorTraining::check() const {
+  const RangeCheck require("director training");
   require(frames >= 0, "frames", double(frames), "0 or more");
   require(lanes >= 1 && lanes <= 4096, "lanes", lanes, "1 to 4096");
   require(ticks >= 1, "ticks", double(ticks), "at least 1");

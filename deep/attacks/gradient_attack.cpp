@@ -3,10 +3,29 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <maximin/deep/attacks/ball_places.hpp>
 #include <maximin/deep/tensors.hpp>
+#include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
+
+GradientAttackOptions gradient_attack_named(std::string_view name) {
+  GradientAttackOptions options;
+  if (name == "pgd") return options;
+  if (name == "min-best") {
+    options.objective = AttackObjective::min_best;
+    return options;
+  }
+  if (name != "pgd-released") {
+    throw InputError(fmt::format("gradient attack: {}, expected pgd, min-best or pgd-released", name));
+  }
+  options.objective = AttackObjective::cross_entropy;
+  options.released_start = true;
+  options.keep_best = false;
+  return options;
+}
 
 GradientAttack::GradientAttack(std::shared_ptr<ActionValueModule> q, const ObservationBall& ball,
                                const GradientAttackOptions& options)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include <maximin/deep/agent.hpp>
 #include <maximin/deep/q_network.hpp>
@@ -27,6 +28,10 @@ struct GradientAttackOptions {
   /// starts at a wrong corner of the ball).
   bool released_start = false;
 };
+
+/// By name: "pgd" and "min-best" are the paper's; "pgd-released" goes by cross-entropy, starts as released and shows
+/// where it ends. Throws InputError on another.
+GradientAttackOptions gradient_attack_named(std::string_view name);
 
 /// Projected gradient descent on the sign of the gradient, from a random start in the ball, on a network, not on the
 /// agent: it does not know of beliefs and aggregators (every attack of the paper is of this kind).

@@ -21,17 +21,6 @@
 namespace maximin::deep {
 namespace {
 
-std::shared_ptr<GridAttack> gradient(const AttackSetting& setting, const AttackTarget& target,
-                                     AttackObjective objective) {
-  GradientAttackOptions options;
-  options.objective = objective;
-  if (setting.name == "pgd-released") {
-    options.released_start = true;
-    options.keep_best = false;
-  }
-  return std::make_shared<GradientAttack>(target.values, ObservationBall(setting.eps), options);
-}
-
 /// What a director's file says of its training, beside what the director says of itself.
 nlohmann::ordered_json training_of(const AttackSetting& setting, const AttackTarget& target, long frames) {
   nlohmann::ordered_json about{
@@ -156,9 +145,9 @@ std::shared_ptr<GridAttack> make_attack(const AttackSetting& setting, const Atta
   if (name == "none") return std::make_shared<NoAttack>();
   if (name == "random") return std::make_shared<RandomAttack>(ball);
   if (name == "constant-offset") return std::make_shared<ConstantOffsetAttack>(ball);
-  if (name == "pgd") return gradient(setting, target, AttackObjective::value);
-  if (name == "pgd-released") return gradient(setting, target, AttackObjective::cross_entropy);
-  if (name == "min-best") return gradient(setting, target, AttackObjective::min_best);
+  if (name.starts_with("pgd") || name == "min-best") {
+    return std::make_shared<GradientAttack>(target.values, ball, gradient_attack_named(name));
+  }
   if (name == "best-response") return std::make_shared<BestResponseAttack>(target.judge, ball, BestResponseOptions{});
   if (name == "through-defence") {
     ThroughDefenceOptions options;

@@ -5,14 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
 namespace {
-
-void require(bool holds, const char* field, double value, const char* expected) {
-  if (!holds) throw InputError(fmt::format("ppo: {} is {}, expected {}", field, value, expected));
-}
 
 // Features come scaled: nothing is put before the first layer.
 QNetworkPtr network(long inputs, const std::vector<long>& hidden, long outputs, Stream& rng) {
@@ -35,6 +32,7 @@ torch::Tensor shuffled(long n, Stream& rng) {
 }  // namespace
 
 void PpoOptions::check() const {
+  const RangeCheck require("ppo");
   require(discount >= 0 && discount <= 1, "discount", discount, "0 to 1");
   require(trace_decay >= 0 && trace_decay <= 1, "trace_decay", trace_decay, "0 to 1");
   require(clip > 0 && clip < 1, "clip", clip, "a number between 0 and 1");

@@ -9,7 +9,8 @@
 
 namespace maximin::deep {
 
-/// Whom an agent is trained against: none, random, pgd (the paper's, on the network being trained), min-best, or mixed.
+/// Whom an agent is trained against: none, random, pgd (the paper's, on the network being trained), pgd-released,
+/// min-best, or mixed.
 /// Mixed draws one for each episode: none, random, a corner of the ball kept all the time, PGD, MinBest, and sampled
 /// best response through the whole defence, so that no single attack is learned by heart. Best responses are judged by
 /// the values as they are when training begins. Throws InputError on another name.

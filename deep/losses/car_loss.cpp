@@ -2,17 +2,21 @@
 #include <string>
 
 #include <maximin/deep/losses/car_loss.hpp>
+#include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
 
+void CarLossOptions::check() const {
+  const RangeCheck require("CAR loss");
+  td.check(require);
+  ramp.check(require);
+  require(lambda > 0 && std::isfinite(lambda), "lambda", lambda, "above 0, e.g. 1");
+  require(clean_share >= 0 && clean_share <= 1, "clean_share", clean_share, "0 to 1");
+}
+
 CarLoss::CarLoss(const CarLossOptions& options) : options_(options) {
-  options_.td.check("CAR loss");
-  options_.ramp.check("CAR loss");
-  if (!(options_.lambda > 0 && std::isfinite(options_.lambda)))
-    throw InputError("CAR loss: lambda " + std::to_string(options_.lambda) + ", expected above 0, e.g. 1");
-  if (!(options_.clean_share >= 0 && options_.clean_share <= 1))
-    throw InputError("CAR loss: clean_share " + std::to_string(options_.clean_share) + ", expected 0 to 1");
+  options_.check();
 }
 
 LossValue CarLoss::operator()(const Batch& batch, QNetwork& online, QNetwork& target, const Progress& progress) {

@@ -21,6 +21,9 @@ struct CarLossOptions {
   BoundMethod bounds = BoundMethod::ibp;
   /// Share of the plain temporal difference that is mixed in (an option of the released code); the paper has none.
   double clean_share = 0;
+
+  /// Throws InputError, naming the option, when one is out of range.
+  void check() const;
 };
 
 /// CAR-DQN (Li et al. 2024): the largest Bellman error that any state of the ball leaves, softly maximised over the

@@ -19,14 +19,11 @@ double PerturbationRamp::share(const Progress& progress) const {
   return t <= m ? a * std::pow(t, 4) : std::min(1.0, a * cube * (m + 4 * (t - m)));
 }
 
-void PerturbationRamp::check(const char* where) const {
-  const std::string loss = where;
-  if (!(eps >= 0 && std::isfinite(eps)))
-    throw InputError(loss + ": eps " + std::to_string(eps) + ", expected finite and at least 0");
-  if (!(start >= 0 && start <= end && end <= 1))
-    throw InputError(loss + ": a ramp from " + std::to_string(start) + " to " + std::to_string(end) +
-                     ", expected 0 <= start <= end <= 1");
-  if (!(range.low <= range.high)) throw InputError(loss + ": an empty range of states, expected low <= high");
+void PerturbationRamp::check(const RangeCheck& require) const {
+  require(eps >= 0 && std::isfinite(eps), "eps", eps, "finite and at least 0");
+  require(start >= 0 && start <= end, "the ramp's start", start, "0 to its end");
+  require(end <= 1, "the ramp's end", end, "1 at most");
+  require(range.low <= range.high, "the lower end of the states", range.low, "the upper one at most");
 }
 
 }  // namespace maximin::deep

@@ -4,6 +4,7 @@
 
 #include <maximin/deep/loss.hpp>
 #include <maximin/deep/output_bounds.hpp>
+#include <maximin/deep/range_check.hpp>
 
 namespace maximin::deep {
 
@@ -27,8 +28,8 @@ struct PerturbationRamp {
     return ball_around(states, eps_at(progress), range);
   }
 
-  /// Throws InputError, after `where`, when one is out of range.
-  void check(const char* where) const;
+  /// Throws InputError when one is out of range.
+  void check(const RangeCheck& require) const;
 };
 
 }  // namespace maximin::deep

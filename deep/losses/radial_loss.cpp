@@ -1,15 +1,20 @@
 #include <string>
 
 #include <maximin/deep/losses/radial_loss.hpp>
+#include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
 
+void RadialLossOptions::check() const {
+  const RangeCheck require("Radial loss");
+  td.check(require);
+  ramp.check(require);
+  require(kappa >= 0 && kappa <= 1, "kappa", kappa, "0 to 1");
+}
+
 RadialLoss::RadialLoss(const RadialLossOptions& options) : options_(options) {
-  options_.td.check("Radial loss");
-  options_.ramp.check("Radial loss");
-  if (!(options_.kappa >= 0 && options_.kappa <= 1))
-    throw InputError("Radial loss: kappa " + std::to_string(options_.kappa) + ", expected 0 to 1");
+  options_.check();
 }
 
 torch::Tensor RadialLoss::adversarial(const Batch& batch, const torch::Tensor& values, const QNetwork& online,

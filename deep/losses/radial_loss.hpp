@@ -18,6 +18,9 @@ struct RadialLossOptions {
   bool ramp_kappa = false;  ///< the share falls from 1 to kappa as the radius grows (first released code); paper: fixed
   BoundMethod bounds = BoundMethod::ibp;
   RadialOverlap overlap = RadialOverlap::separate_bounds;
+
+  /// Throws InputError, naming the option, when one is out of range.
+  void check() const;
 };
 
 /// Radial-DQN (Oikarinen et al. 2021, section 4.1): kappa TD + (1 - kappa) L_adv with

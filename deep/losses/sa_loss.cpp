@@ -2,6 +2,7 @@
 #include <string>
 
 #include <maximin/deep/losses/sa_loss.hpp>
+#include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -10,13 +11,16 @@ torch::Tensor greatest_lead(const torch::Tensor& difference_bounds, const torch:
   return difference_bounds.scatter(1, reference.unsqueeze(1), -std::numeric_limits<double>::infinity()).amax(1);
 }
 
+void SaLossOptions::check() const {
+  const RangeCheck require("SA loss");
+  td.check(require);
+  ramp.check(require);
+  require(kappa >= 0, "kappa", kappa, "at least 0");
+  require(margin >= 0, "margin", margin, "at least 0");
+}
+
 SaLoss::SaLoss(const SaLossOptions& options) : options_(options) {
-  options_.td.check("SA loss");
-  options_.ramp.check("SA loss");
-  if (!(options_.kappa >= 0))
-    throw InputError("SA loss: kappa " + std::to_string(options_.kappa) + ", expected at least 0");
-  if (!(options_.margin >= 0))
-    throw InputError("SA loss: margin " + std::to_string(options_.margin) + ", expected at least 0");
+  options_.check();
 }
 
 torch::Tensor SaLoss::hinge(const torch::Tensor& states, QNetwork& online, const Progress& progress) const {

@@ -15,6 +15,9 @@ struct SaLossOptions {
   /// Bounds of the differences. Unset: beta CROWN-IBP + (1 - beta) IBP with beta = 1 - eps/eps_max, as in CROWN-IBP
   /// training, which begins with the narrow bounds and ends with those that train best.
   std::optional<BoundMethod> bounds{};
+
+  /// Throws InputError, naming the option, when one is out of range.
+  void check() const;
 };
 
 /// SA-DQN (Zhang et al. 2020, section 3.4): the Huber loss of the temporal difference plus

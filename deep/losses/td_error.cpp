@@ -6,11 +6,9 @@
 
 namespace maximin::deep {
 
-void TdOptions::check(const char* where) const {
-  if (!(discount >= 0 && discount <= 1))
-    throw InputError(std::string(where) + ": discount " + std::to_string(discount) + ", expected 0 to 1");
-  if (!(huber > 0 && std::isfinite(huber)))
-    throw InputError(std::string(where) + ": huber " + std::to_string(huber) + ", expected above 0, e.g. 1");
+void TdOptions::check(const RangeCheck& require) const {
+  require(discount >= 0 && discount <= 1, "discount", discount, "0 to 1");
+  require(huber > 0 && std::isfinite(huber), "huber", huber, "above 0, e.g. 1");
 }
 
 torch::Tensor next_state_target(const Batch& batch, ActionValueModule& online, ActionValueModule& target,

@@ -4,6 +4,7 @@
 
 #include <maximin/deep/loss.hpp>
 #include <maximin/deep/q_network.hpp>
+#include <maximin/deep/range_check.hpp>
 
 /// Temporal differences with the next state itself in the place of a belief: what the robust baselines add to.
 namespace maximin::deep {
@@ -15,8 +16,8 @@ struct TdOptions {
   bool double_q = true;
   double huber = 1;  ///< where the squared loss becomes linear
 
-  /// Throws InputError, after `where`, when one is out of range.
-  void check(const char* where) const;
+  /// Throws InputError when one is out of range.
+  void check(const RangeCheck& require) const;
 };
 
 /// y = R + discount (1 - terminal) Q'(s', a*), [b], without gradient.

@@ -16,6 +16,9 @@ torch::Tensor TdLoss::target_values(const Batch& batch, QNetwork& online, QNetwo
   torch::Tensor next;
   if (options_.order == TargetOrder::aggregate_of_max) {
     next = aggregate(options_.aggregator, q.amax(2, true), weights).squeeze(1);
+  } else if (options_.order == TargetOrder::belief_greedy) {
+    const torch::Tensor there = target.forward(batch.next_states).gather(1, q.argmax(2));
+    next = aggregate(options_.aggregator, there.unsqueeze(2), weights).squeeze(1);
   } else if (options_.double_q) {
     const torch::Tensor chooser = aggregate(options_.aggregator, values_over(batch.next_belief, online), weights);
     next = of_actions(aggregate(options_.aggregator, q, weights), chooser.argmax(1));

@@ -9,6 +9,9 @@ namespace maximin::deep {
 enum class TargetOrder {
   max_of_aggregate,  ///< max_a Aggregate_{m in M} Q'(m,a), the paper's maximin
   aggregate_of_max,  ///< Aggregate_{m in M} max_a Q'(m,a), the released Gridworld code
+  /// Aggregate_{m in M} Q'(s',a_m) with a_m greedy at m: the true next state, and what may be done there (the released
+  /// Atari code, with the minimum).
+  belief_greedy,
 };
 
 struct TdLossOptions {

@@ -4,31 +4,27 @@
 
 #include <maximin/deep/losses/sa_loss.hpp>
 #include <maximin/deep/losses/wocar_loss.hpp>
+#include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
-namespace {
 
-void check_share(const char* name, double value) {
-  if (!(value >= 0 && value <= 1))
-    throw InputError(std::string("WocaR loss: ") + name + " " + std::to_string(value) + ", expected 0 to 1");
+void WocarLossOptions::check() const {
+  const RangeCheck require("WocaR loss");
+  td.check(require);
+  ramp.check(require);
+  require(kappa >= 0 && kappa <= 1, "kappa", kappa, "0 to 1");
+  require(worst_share >= 0 && worst_share <= 1, "worst_share", worst_share, "0 to 1");
+  require(hinge_margin >= 0, "hinge_margin", hinge_margin, "at least 0");
+  const double critic = critic_eps.value_or(0);
+  require(critic >= 0 && std::isfinite(critic), "critic_eps", critic, "finite and at least 0");
 }
-
-}  // namespace
 
 WocarLoss::WocarLoss(const WocarLossOptions& options, const QNetworkShape& shape, Stream& rng)
     : options_(options),
       critic_(std::make_shared<QNetwork>(shape, rng)),
       critic_target_(std::make_shared<QNetwork>(shape, rng)) {
-  options_.td.check("WocaR loss");
-  options_.ramp.check("WocaR loss");
-  check_share("kappa", options_.kappa);
-  check_share("worst_share", options_.worst_share);
-  if (!(options_.hinge_margin >= 0))
-    throw InputError("WocaR loss: hinge_margin " + std::to_string(options_.hinge_margin) + ", expected at least 0");
-  if (options_.critic_eps && !(*options_.critic_eps >= 0 && std::isfinite(*options_.critic_eps)))
-    throw InputError("WocaR loss: critic_eps " + std::to_string(*options_.critic_eps) +
-                     ", expected finite and at least 0");
+  options_.check();
   for (torch::Tensor& parameter : critic_target_->parameters()) parameter.set_requires_grad(false);
   copy_targets();
 }

@@ -59,6 +59,9 @@ struct WocarLossOptions {
   bool reach_at_state = false;
   /// The critic's target is of a target network; else of the critic itself, as released.
   bool critic_target_network = true;
+
+  /// Throws InputError, naming the option, when one is out of range.
+  void check() const;
 };
 
 /// WocaR-DQN (Liang et al. 2022): two action-value networks side by side. Q learns what the agent gains unattacked when

@@ -1,19 +1,20 @@
 #include <maximin/deep/report/json_fields.hpp>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 
 #include <fmt/format.h>
 
+#include <maximin/models/files/input_file.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// A device has no end; a table of results is a hundredth of it.
+constexpr std::size_t most_bytes = std::size_t{1} << 28U;
 
 /// What stands there, short enough for a line.
 std::string excerpt(const Json& json) {
@@ -156,16 +157,12 @@ void Fields::expect_schema(std::string_view schema, std::uint64_t version) const
 }
 
 Json read_json_file(const std::filesystem::path& path, std::string_view expected) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path)) {
-    throw InputError(
-        fmt::format("{}: {}, expected {}", path.string(), in ? "a folder" : std::strerror(errno), expected));
-  }
+  const std::string text = file_bytes(path, most_bytes, expected);
   const auto not_too_deep = [&](int depth, Json::parse_event_t, Json&) {
     if (depth > 64) throw InputError(fmt::format("{}: nested too deep, expected {}", path.string(), expected));
     return true;
   };
-  Json json = Json::parse(in, not_too_deep, false);
+  Json json = Json::parse(text, not_too_deep, false);
   if (json.is_discarded()) throw InputError(fmt::format("{}: not JSON, expected {}", path.string(), expected));
   return json;
 }

@@ -8,7 +8,7 @@
 #include <maximin/models/files/csv.hpp>
 #include <maximin/models/files/drn.hpp>
 #include <maximin/models/files/gymnasium_json.hpp>
-#include <maximin/models/files/internal/file_bytes.hpp>
+#include <maximin/models/files/input_file.hpp>
 #include <maximin/models/files/internal/gzip.hpp>
 #include <maximin/models/files/internal/json_document.hpp>
 #include <maximin/models/files/internal/text_lines.hpp>
@@ -77,7 +77,7 @@ template <class Scalar>
 Model<Scalar> load_model(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string file = path.string();
   const TextSource source(file);
-  std::string bytes = file_bytes(path, options.limits.bytes);
+  std::string bytes = file_bytes(path, options.limits.bytes, "a readable model file");
   Format format = format_of_extension(lower_extension(path));
   if (is_gzip(bytes)) {
     bytes = gunzip(source, bytes, options.limits.bytes);

@@ -39,17 +39,24 @@ REFUSALS = [
     refused(["train", "dqn", "--config", "c.json"], "10^12 at most",
             c_json='{"training": {"stretch_frames": 4000000000000000000}}'),
     refused(["train", "dqn", "--seeds", "2", "--config", "c.json"], "asked for twice", c_json='{"training": {"seed": 5}}'),
+    refused(["train", "bp-dqn", "--eps", "0.1", "--config", "c.json"], "c.json: sets eps, which an option sets too",
+            c_json='{"eps": 0.5}'),
+    refused(["train", "dqn", "--seed", "1", "--config", "c.json"], "c.json: sets training/seed", c_json='{"training": {"seed": 5}}'),
+    refused(["train", "dqn", "--seed", "18446744073709551615", "--seeds", "2"], "expected seeds below 2^64"),
+    refused(["train", "sa-dqn", "--config", "c.json"], "SA loss: kappa is -1", c_json='{"loss_options": {"kappa": -1}}'),
+    refused(["train", "bp-dqn", "--config", "/dev/zero"], "/dev/zero: larger than"),
+    refused(["watch", "a.agent", "-o", "b.svg"], "b.svg: exists", a_agent="PK", b_svg="mine"),
     refused(["evaluate", "a.agent", "b.agent", "--attack", "pa-ad", "--attacker", "f"], "--attacker: one file for 1"),
     refused(["watch", "a.agent", "-o", "a.agent", "--force"], "a.agent: named twice", a_agent="PK"),
     refused(["watch", "a.agent", "-o", "b.svg", "--trace", "b.svg"], "b.svg: named twice", a_agent="PK"),
     refused(["evaluate", "/dev/null"], "/dev/null: is a device or a pipe"),
-    refused(["evaluate", "none.agent"], "none.agent: cannot be read"),
+    refused(["evaluate", "none.agent"], "none.agent: No such file or directory, expected a file of kind"),
     refused(["evaluate", "a.agent"], "a.agent: no file of this program", a_agent="PK"),
     refused(["evaluate", "a.agent"], "a.agent: cut off or damaged", a_agent="maximin-tensors 1\n{}\n1234"),
     refused(["evaluate", "a.agent", "--attack", "pdg"], "--attack: pdg"),
     refused(["evaluate", "a.agent", "--eps", "-1"], "--eps: -1"),
     refused(["evaluate", "a.agent", "--belief", "all"], "--belief: all"),
-    refused(["watch", "none.agent"], "none.agent: cannot be read"),
+    refused(["watch", "none.agent"], "none.agent: No such file or directory, expected a file of kind"),
     refused(["table", "atari"], "atari"),
     refused(["table", "gridworld", "--only", "dqm"], "dqm"),
     refused(["table", "aggregators", "--only", "dqn"], "--only, --attacks: no such cell"),
@@ -197,6 +204,19 @@ def check_agents(program):
             problems.append("evaluate: %s" % returns(first))
         if returns(first) != returns(second) or returns(first) == returns(other):
             problems.append("evaluate: the same seed gives other numbers, or another the same")
+        # Whose values the attack on the whole defence went by; without one, that agent is not even read.
+        judges = [r["judge"] for r in json.loads(first.stdout)["results"]]
+        if judges != [None, "dqn-seed1.agent"] * 2:
+            problems.append("evaluate: judges %s" % judges)
+        os.rename(os.path.join(folder, expected[1]), os.path.join(folder, "aside"))
+        own = json.loads(here(*evaluate).stdout)["results"]
+        if own[1]["judge"] != "the agent's own values":
+            problems.append("evaluate: without a vanilla agent %s" % own[1])
+        with open(os.path.join(folder, expected[1]), "w") as f:
+            f.write("PK")
+        if here(*evaluate).returncode != 2 or here("evaluate", expected[0], "--episodes", "2").returncode != 0:
+            problems.append("evaluate: a broken judge counts where there is none, or the other way round")
+        os.replace(os.path.join(folder, "aside"), os.path.join(folder, expected[1]))
         if b"of these very networks" not in here(*evaluate[:-1]).stdout:
             problems.append("evaluate: no table")
 
@@ -313,6 +333,18 @@ def check_killed_table(program):
         with open(json_file, "w") as f:
             f.write("{")
         broken = deep(program, command("cut")[1:])
+        foreign = table("whole")
+        foreign["blocks"][0]["cells"][0]["runs"][0]["returns"] *= 2  # the same mean, of twice the episodes
+        foreign["wall_seconds"] = 1
+        for b in foreign["blocks"]:
+            for c in b["cells"]:
+                for r in c["runs"]:
+                    r["wall_seconds"] = 1
+        with open(json_file, "w") as f:
+            json.dump(foreign, f)
+        refused_runs = deep(program, command("cut")[1:])
+        if refused_runs.returncode != 2 or b"a run of 4 episodes from seed 1001, expected 2" not in refused_runs.stderr:
+            problems.append("runs of another table: exit code %d, %r" % (refused_runs.returncode, refused_runs.stderr))
         if broken.returncode != 2 or broken.stderr.count(b"\n") != 1:
             problems.append("broken table: exit code %d, %r" % (broken.returncode, broken.stderr))
     return problems

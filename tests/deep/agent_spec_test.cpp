@@ -45,6 +45,12 @@ TEST(AgentSpec, EveryRecipeIsReadAsItIsWritten) {
   const AgentSpec spec = recipe("bp-dqn", 0.1, 1);
   const Json flat = to_json(spec).flatten();
   EXPECT_EQ(flat.size(), 46U + spec.network.hidden.size() - 2);
+  // A loss's own options and a particle filter's are told where they count.
+  EXPECT_EQ(to_json(recipe("wocar-dqn", 0.1, 1))["loss_options"].flatten().size(), 15U);
+  const Json released = to_json(recipe("bp-dqn-released", 0.1, 1));
+  EXPECT_EQ(released["particle_filter"]["normalisation"], "batch");
+  EXPECT_EQ(released["particle_filter_belief"]["correct"], false);
+  EXPECT_EQ(released["target_order"], "aggregate-of-max");
   AgentSpec changed = spec;
   changed.training.replay.beta_start = 0.5;
   EXPECT_NE(to_json(changed), to_json(spec));
@@ -67,6 +73,11 @@ TEST(AgentSpec, RefusesWhatIsNoSpecification) {
     });
   };
   EXPECT_EQ(merge({{"eps", 1}, {"network", {{"hidden", {64, 64, 64}}}}}), "[nothing thrown]");
+  EXPECT_EQ(merge({{"loss", "sa"}, {"loss_options", {{"bounds", "ibp"}}}}), "[nothing thrown]");
+  EXPECT_EQ(merge({{"loss", "sa"}, {"loss_options", {{"bounds", nullptr}}}}), "[nothing thrown]");
+  EXPECT_EQ(merge({{"belief", "pf-gru"}, {"particle_filter", {{"cells", false}}}}), "[nothing thrown]");
+  EXPECT_EQ(merge({{"target_order", "max"}}),
+            "mine.json: target_order: \"max\", expected max-of-aggregate, aggregate-of-max, belief-greedy");
   EXPECT_EQ(merge({{"epps", 1}}), "mine.json: \"epps\": no such field, expected eps");
   EXPECT_EQ(merge({{"training", {{"learning_rat", 1}}}}),
             "mine.json: training: \"learning_rat\": no such field, expected learning_rate");
@@ -125,6 +136,20 @@ TEST(AgentSpec, RefusesWhatIsNoSpecification) {
                        R"({"training": {"replay": {"alpha": -1}}})",
                        R"({"training": {"replay": {"capacity": 1e3}}})",
                        R"({"training": {"gradient_clip": -1}})",
+                       R"({"particle_filter": {"cells": false}})",
+                       R"({"loss_options": {"kappa": 1}})",
+                       R"({"loss": "sa", "loss_options": {"kappa": -1}})",
+                       R"({"loss": "sa", "loss_options": {"bounds": 2}})",
+                       R"({"loss": "sa", "loss_options": {"ramp": {"end": 2}}})",
+                       R"({"loss": "radial", "loss_options": {"kappa": 2}})",
+                       R"({"loss": "car", "loss_options": {"lambda": 0}})",
+                       R"({"loss": "wocar", "loss_options": {"critic_eps": "0.1"}})",
+                       R"({"loss": "wocar", "loss_options": {"critic_eps": -1}})",
+                       R"({"belief": "pf-lstm", "eps": 0})",
+                       R"({"belief": "pf-lstm", "particle_filter": {"alpha": 2}})",
+                       R"({"belief": "pf-lstm", "particle_filter": {"cell": "gru"}})",
+                       R"({"belief": "pf-lstm", "particle_filter_training": {"batch": 0}})",
+                       R"({"belief": "pf-lstm", "particle_filter_belief": {"slack": -1}})",
                        R"({"a\nb": 1})"};
   for (const char* text : bad) {
     const std::string message = merge(Json::parse(text));

@@ -11,6 +11,7 @@
 #include <maximin/deep/losses/car_loss.hpp>
 #include <maximin/deep/losses/radial_loss.hpp>
 #include <maximin/deep/losses/sa_loss.hpp>
+#include <maximin/deep/losses/td_loss.hpp>
 #include <maximin/deep/losses/wocar_loss.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -77,6 +78,28 @@ TEST(TdError, HandComputed) {
   expect_values(huber(row({0.5, -1, 3}), 1), {0.125, 0.5, 2.5});
   expect_values(huber(row({0.5, -1, 3}), 2), {0.125, 0.5, 4});
   EXPECT_FALSE(next_state_target(batch, *q.online, *q.target, td).requires_grad());
+}
+
+TEST(TdLoss, OrdersOfBestActionAndWorstState) {
+  // Q'(x) = (x, 3 - 2x). Beliefs of three transitions: {0, 2}, {2, 2}, {1, 0}; Q'(0) = (0, 3), Q'(1) = (1, 1),
+  // Q'(2) = (2, -1).
+  Batch batch = three_transitions();
+  batch.next_belief = {torch::tensor({0., 2., 2., 2., 1., 0.}, torch::kDouble).view({3, 2, 1}),
+                       torch::full({3, 2}, 0.5, torch::kDouble)};
+  Affine q;
+  TdLossOptions options{.discount = 0.5};
+  const auto targets = [&] { return TdLoss(options).target_values(batch, *q.online, *q.target); };
+  // max_a min_m: max(0, -1) = 0; an end; max(0, 1) = 1.
+  expect_values(targets(), {1, 1, -1 + 0.5});
+  // min_m max_a: min(3, 2) = 2; an end; min(1, 3) = 1.
+  options.order = TargetOrder::aggregate_of_max;
+  expect_values(targets(), {1 + 1, 1, -1 + 0.5});
+  // What is greedy at 0 (action 1) and at 2 (action 0), done in 2: min(-1, 2) = -1; what is at 1 (0 or 1, the first)
+  // and at 0 (action 1), done in 0: min(0, 3) = 0.
+  options.order = TargetOrder::belief_greedy;
+  expect_values(targets(), {1 - 0.5, 1, -1});
+  options.aggregator = MeanAggregator{};
+  expect_values(targets(), {1 + 0.25, 1, -1 + 0.75});
 }
 
 TEST(PerturbationRamp, GrowsFromNothingToFull) {
@@ -544,18 +567,17 @@ TEST(Losses, BadOptionsAreNamed) {
     return "";
   };
   const PerturbationRamp negative{.eps = -1}, backwards{.start = 0.6, .end = 0.5};
-  EXPECT_EQ(message([&] { SaLoss({.ramp = negative}); }), "SA loss: eps -1.000000, expected finite and at least 0");
+  EXPECT_EQ(message([&] { SaLoss({.ramp = negative}); }), "SA loss: eps is -1, expected finite and at least 0");
   EXPECT_EQ(message([&] { RadialLoss({.ramp = backwards}); }),
-            "Radial loss: a ramp from 0.600000 to 0.500000, expected 0 <= start <= end <= 1");
-  EXPECT_EQ(message([] { SaLoss({.ramp = {}, .kappa = -1}); }), "SA loss: kappa -1.000000, expected at least 0");
-  EXPECT_EQ(message([] { RadialLoss({.ramp = {}, .kappa = 1.5}); }), "Radial loss: kappa 1.500000, expected 0 to 1");
-  EXPECT_EQ(message([] { CarLoss({.ramp = {}, .lambda = 0}); }), "CAR loss: lambda 0.000000, expected above 0, e.g. 1");
-  EXPECT_EQ(message([] { CarLoss({.td = {.discount = 2}, .ramp = {}}); }),
-            "CAR loss: discount 2.000000, expected 0 to 1");
+            "Radial loss: the ramp's start is 0.6, expected 0 to its end");
+  EXPECT_EQ(message([] { SaLoss({.ramp = {}, .kappa = -1}); }), "SA loss: kappa is -1, expected at least 0");
+  EXPECT_EQ(message([] { RadialLoss({.ramp = {}, .kappa = 1.5}); }), "Radial loss: kappa is 1.5, expected 0 to 1");
+  EXPECT_EQ(message([] { CarLoss({.ramp = {}, .lambda = 0}); }), "CAR loss: lambda is 0, expected above 0, e.g. 1");
+  EXPECT_EQ(message([] { CarLoss({.td = {.discount = 2}, .ramp = {}}); }), "CAR loss: discount is 2, expected 0 to 1");
   Stream rng(1);
   WocarLossOptions options;
   options.worst_share = -0.5;
-  EXPECT_EQ(message([&] { WocarLoss(options, {}, rng); }), "WocaR loss: worst_share -0.500000, expected 0 to 1");
+  EXPECT_EQ(message([&] { WocarLoss(options, {}, rng); }), "WocaR loss: worst_share is -0.5, expected 0 to 1");
   EXPECT_EQ(message([&] { WocarLoss({}, {}, rng); }), "");
 }
 

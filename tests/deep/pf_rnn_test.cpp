@@ -11,9 +11,9 @@
 
 #include <maximin/deep/pf_rnn.hpp>
 #include <maximin/deep/pf_rnn_belief.hpp>
-#include <maximin/deep/pf_rnn_file.hpp>
 #include <maximin/deep/pf_rnn_training.hpp>
 #include <maximin/deep/prediction_errors.hpp>
+#include <maximin/deep/tensor_file.hpp>
 #include <maximin/deep/tensors.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -427,49 +427,25 @@ TEST(PfRnn, TrainingIsReproducibleAndRefusesNonsense) {
   EXPECT_THROW(make(published), InputError);
 }
 
-std::string message_of(const std::string& bytes) {
-  std::istringstream in(bytes);
-  try {
-    load_pf_rnn(in, "belief.pf");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(PfRnn, FilesComeBackOrAreRefused) {
+TEST(PfRnn, KeepsAllItsNumbersInAFile) {
   for (PfRnnOptions options : {tiny(PfCell::gru), PfRnnOptions::published(0.25)}) {
     const PfRnnPtr module = make(options);
     if (options.normalisation == PfNormalisation::batch) {
       module->named_buffers()["candidate.batch.running_mean"].fill_(0.125);
     }
-    std::ostringstream out;
-    save_pf_rnn(out, *module);
-    const std::string bytes = out.str();
-    std::istringstream in(bytes);
-    const PfRnnPtr back = load_pf_rnn(in, "belief.pf");
-    EXPECT_EQ(back->options(), module->options());
-    const auto same = back->named_parameters();
-    for (const auto& item : module->named_parameters()) EXPECT_TRUE(torch::equal(item.value(), same[item.key()]));
-    std::ostringstream again;
-    save_pf_rnn(again, *back);
-    EXPECT_EQ(again.str(), bytes);
-
-    EXPECT_EQ(message_of(bytes), "");
-    std::vector<std::string> damaged{"", "maximin", "maximin-pf-rnn 1\n", "{\"format\": \"else\"}", bytes + "x"};
-    std::string other_version = bytes;
-    other_version[bytes.find('1')] = '2';
-    damaged.push_back(other_version);
-    for (std::size_t i = 0; i < 40; ++i) {
-      damaged.push_back(bytes.substr(0, bytes.size() * i / 40));
-      damaged.push_back(bytes);
-      damaged.back()[(bytes.size() - 1) * i / 39] ^= 0x10;
-    }
-    for (const std::string& file : damaged) {
-      const std::string message = message_of(file);
-      EXPECT_TRUE(message.starts_with("belief.pf: ")) << message;
-      EXPECT_EQ(message.find('\n'), std::string::npos);
-    }
+    TensorFile file{"any", {}, {}};
+    put_module(file, "filter", *module);
+    Stream others(99);
+    const auto back = std::make_shared<PfRnn>(options, others);
+    EXPECT_NE(checksum_of(*back), checksum_of(*module));
+    get_module(file, "filter", *back);
+    EXPECT_EQ(checksum_of(*back), checksum_of(*module));
+    const auto buffers = back->named_buffers();
+    for (const auto& item : module->named_buffers()) EXPECT_TRUE(torch::equal(item.value(), buffers[item.key()]));
+    options.hidden += 1;
+    Stream again(1);
+    PfRnn wider(options, again);
+    EXPECT_THROW(get_module(file, "filter", wider), InputError);
   }
 }
 

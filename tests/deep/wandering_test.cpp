@@ -31,7 +31,8 @@ TEST(Wandering, WhatIsShownIsInTheBallAndTheMixtureCoversTheWorld) {
           drawn.insert(lane.last_action());
           exact.update(lane.last_action(), lane.shown());
         }
-        ASSERT_TRUE(ball.contains(lane.truth(), lane.shown())) << name(static_cast<Deception>(kind));
+        ASSERT_TRUE(ball.contains(lane.truth(), lane.shown()))
+            << words_of(Deception::none).at(static_cast<std::size_t>(kind));
         ASSERT_TRUE(exact.belief().contains(lane.truth()));
         outside_of_half += !ObservationBall(eps / 2).contains(lane.truth(), lane.shown());
         ++visits[static_cast<std::size_t>(std::floor(lane.truth().y) * 10 + std::floor(lane.truth().x))];

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <maximin/models/files/input_file.hpp>
+
 namespace maximin::internal {
 namespace {
 
@@ -63,6 +65,11 @@ std::string gunzip(const Source& source, std::string_view bytes, std::size_t lim
     bytes.remove_prefix(inflater.member(source, bytes, limit, out));
   } while (!bytes.empty());
   return out;
+}
+
+std::string unpacked_file_bytes(const std::filesystem::path& path, std::size_t limit) {
+  std::string bytes = file_bytes(path, limit, "a readable model file");
+  return is_gzip(bytes) ? gunzip(TextSource(path.string()), bytes, limit) : bytes;
 }
 
 }  // namespace maximin::internal

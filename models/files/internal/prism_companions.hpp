@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <maximin/models/files/internal/file_bytes.hpp>
+#include <maximin/models/files/internal/gzip.hpp>
 #include <maximin/models/files/internal/number.hpp>
 #include <maximin/models/files/internal/text_lines.hpp>
 #include <maximin/models/files/prism_explicit.hpp>

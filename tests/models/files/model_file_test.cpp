@@ -159,7 +159,7 @@ TEST_F(ModelFile, ByteOrderMarksAreSkipped) {
 TEST_F(ModelFile, TellsWhatCannotBeRead) {
   EXPECT_EQ(error(folder_ / "absent.json"), "absent.json: No such file or directory, expected a readable model file");
   std::filesystem::create_directory(folder_ / "dir.json");
-  EXPECT_EQ(error(folder_ / "dir.json"), "dir.json: a folder, expected a model file");
+  EXPECT_EQ(error(folder_ / "dir.json"), "dir.json: a folder, expected a readable model file");
   EXPECT_EQ(error(write("m.json", "{}")),
             "m.json: $: neither 'format' nor 'P', expected \"format\": \"maximin-mdp\" or a gymnasium table with 'P'");
   EXPECT_EQ(error(write("m.drn", std::string("\xfd") + "7zXZ")),
