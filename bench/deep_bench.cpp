@@ -18,13 +18,7 @@ TrainedAgent untrained_agent(const std::string& kind) {
   spec.training.stretch_frames = 6400;
   spec.training.frames = 1'000'000'000;
   TrainedAgent agent = untrained(spec);
-  if (spec.has_particle_filter()) {
-    Stream rng(1);
-    PfRnnOptions shape;
-    shape.cell = spec.belief == "pf-gru" ? PfCell::gru : PfCell::lstm;
-    shape.eps = spec.eps;
-    agent.particle_filter = std::make_shared<PfRnn>(shape, rng);
-  }
+  if (spec.has_particle_filter()) agent.particle_filter = untrained_filter(spec);
   return agent;
 }
 

@@ -16,7 +16,6 @@
 #include <maximin/theory/random.hpp>
 
 #include "input_errors.hpp"
-#include "prepared_runtime.hpp"
 
 namespace maximin::deep {
 namespace {
