@@ -1,7 +1,6 @@
 #include <benchmark/benchmark.h>
 
 #include <maximin/deep/attacks/simple_attacks.hpp>
-#include <maximin/deep/attacks/training_attack.hpp>
 #include <maximin/deep/runtime.hpp>
 #include <maximin/deep/trained_agent.hpp>
 
@@ -25,16 +24,7 @@ TrainedAgent untrained_agent(const std::string& kind) {
 /// One iteration is a stretch of 6400 frames, updates, attack and beliefs included.
 void train(benchmark::State& state, const std::string& kind) {
   TrainedAgent agent = untrained_agent(kind);
-  const AgentSpec& spec = agent.spec;
-  Acting acting = acting_of(spec);
-  acting.belief_states = spec.training_belief_states;
-  TrainingParts parts;
-  parts.online = agent.q;
-  parts.belief = make_belief(acting, spec.eps, agent.particle_filter);
-  parts.aggregator = aggregator_named(spec.aggregator);
-  parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values_in_rewards(), *agent.q);
-  parts.loss = agent.loss;
-  Trainer trainer(spec.training, parts);
+  Trainer trainer(agent.spec.training, training_parts(agent));
   trainer.stretch();
   long frames = 0;
   for (auto _ : state) {

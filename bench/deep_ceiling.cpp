@@ -1,9 +1,9 @@
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -24,18 +24,7 @@
 /// How far attacks on trained agents are from the exact optimal attacker, and agents from what can be guaranteed: both
 /// on the lattice, where it can be said exactly.
 ///
-///     deep_ceiling [name=value...] AGENT_FILE...
-///
-///     steps=1           lattice steps to a move: spacing 0.5/steps
-///     eps=0.5           radius of the balls on the lattice
-///     diagonal=nearest  or interpolated (random, right on average)
-///     belief=, aggregator=   in the place of the agents' own: observed, ball or exact; min, mean, soft-min:B, cvar:A
-///     positions=2000000      of (truth, belief), before the exact worst case of an agent with memory is given up
-///     beliefs=2000000        before what an agent can be sure of is given up; 0: not asked
-///     rounds=4               episodes from every start for attacks that draw
-///     attacks=yes            the deep layer's attacks too, but for those that ask the agent for more than its answers
-///     learned=no             or quick, or full: learned attacks too, taught in the continuous world, for seconds or
-///                            minutes
+///     deep_ceiling [OPTION...] [AGENT_FILE...]        --help tells the options
 ///
 /// An agent whose belief is a particle filter is taken with the exact belief of the lattice. Agents were trained in the
 /// continuous world; on a coarse lattice diagonal moves end elsewhere (bench/gridworld_discretisation), so look at "no
@@ -44,50 +33,31 @@ namespace maximin::deep {
 namespace {
 
 struct Settings {
+  int steps = 1;
   GridworldLatticeOptions lattice;
-  std::string belief, aggregator;
+  bool interpolated = false, without_attacks = false;
+  ActingChange change;
   long positions = 2'000'000, beliefs = 2'000'000, rounds = 4;
-  bool attacks = true;
   std::string learned = "no";
   std::vector<std::filesystem::path> files;
 };
 
-Settings parse(int argc, char** argv) {
-  Settings s;
-  for (int i = 1; i < argc; ++i) {
-    const std::string text = argv[i];
-    const std::size_t equals = text.find('=');
-    const std::string name = text.substr(0, equals);
-    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
-    if (equals == std::string::npos) {
-      s.files.emplace_back(text);
-    } else if (name == "steps") {
-      s.lattice.spacing = 0.5 / std::atoi(value.c_str());
-    } else if (name == "eps") {
-      s.lattice.eps = std::atof(value.c_str());
-    } else if (name == "diagonal") {
-      s.lattice.diagonal = value == "interpolated" ? DiagonalMove::interpolated : DiagonalMove::nearest;
-    } else if (name == "belief") {
-      s.belief = value;
-    } else if (name == "aggregator") {
-      s.aggregator = value;
-    } else if (name == "positions") {
-      s.positions = std::atol(value.c_str());
-    } else if (name == "beliefs") {
-      s.beliefs = std::atol(value.c_str());
-    } else if (name == "rounds") {
-      s.rounds = std::atol(value.c_str());
-    } else if (name == "attacks") {
-      s.attacks = value == "yes";
-    } else if (name == "learned") {
-      s.learned = value;
-    } else {
-      throw InputError(fmt::format(
-          "{}: expected steps, eps, diagonal, belief, aggregator, positions, beliefs, rounds, attacks or learned",
-          text));
-    }
-  }
-  return s;
+void declare(CLI::App& app, Settings& s) {
+  app.add_option("FILE", s.files, "Agent files");
+  app.add_option("--steps", s.steps, "Lattice steps to a move: spacing 0.5/steps")->check(CLI::Range(1, 100));
+  app.add_option("--eps", s.lattice.eps, "Radius of the balls on the lattice")->check(CLI::Range(0.0, 5.0));
+  app.add_flag("--interpolated", s.interpolated, "Diagonal moves random, right on average, not to the nearest point");
+  app.add_option("--belief", s.change.belief, "In place of the agents' own: observed, ball or exact")
+      ->check(CLI::IsMember({"observed", "ball", "exact"}));
+  app.add_option("--aggregator", s.change.aggregator, "In place of the agents' own: min, mean, soft-min:B, cvar:A");
+  app.add_option("--positions", s.positions, "(truth, belief) before an exact worst case is given up")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--beliefs", s.beliefs, "Before what an agent can be sure of is given up; 0: not asked")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--rounds", s.rounds, "Episodes from every start for attacks that draw")->check(CLI::PositiveNumber);
+  app.add_flag("--without-attacks", s.without_attacks, "The exact attacker alone");
+  app.add_option("--learned", s.learned, "Learned attacks too, taught in the continuous world: no, quick or full")
+      ->check(CLI::IsMember({"no", "quick", "full"}));
 }
 
 class Clock {
@@ -159,7 +129,7 @@ void report_attack(const LatticeWorld& world, const LatticeMind& mind, GridAttac
   const Clock clock;
   LatticeAgent agent(world, mind);
   OnLattice on_lattice(attack, world);
-  // What comes after 1000 steps is discounted to nothing; the total is that of the first 100.
+  // Both are of the first 100 steps.
   const auto totals = play_every_start(world, agent, on_lattice, rounds, 1);
   const std::size_t n = world.starts().size();
   Values<double> total = Values<double>::Zero(world.mdp().states()), discounted = total;
@@ -173,10 +143,10 @@ void report_attack(const LatticeWorld& world, const LatticeMind& mind, GridAttac
 }
 
 void report_agent(const LatticeWorld& world, const std::filesystem::path& file, const Settings& settings) {
-  const TrainedAgent trained = read_agent(file);
-  Acting acting = acting_of(trained.spec);
-  if (!settings.belief.empty()) acting.belief = settings.belief;
-  if (!settings.aggregator.empty()) acting.aggregator = settings.aggregator;
+  TrainedAgent trained = read_agent(file);
+  // A vanilla agent has no radius of its own.
+  if (!trained.spec.knows_eps()) trained.spec.eps = settings.lattice.eps;
+  const Acting acting = acting_of(trained.spec, settings.change);
   const std::shared_ptr<ActionValueModule> values = trained.values();
   const LatticeMind mind = deep_mind(values_on_lattice(*values, world), aggregator_named(acting.aggregator),
                                      memory_of(acting.belief), world);
@@ -187,7 +157,7 @@ void report_agent(const LatticeWorld& world, const std::filesystem::path& file, 
   const AttackTarget target{in_rewards, in_rewards, "", trained.spec.training.reward_scale,
                             [&] { return make_agent(trained, acting); }};
   for (const NamedAttack& named : named_attacks()) {
-    if (named.learned ? settings.learned == "no" : !settings.attacks && named.name != "none") continue;
+    if (named.learned ? settings.learned == "no" : settings.without_attacks && named.name != "none") continue;
     if (named.name == "through-defence") continue;  // differentiates what the agent goes by, off the lattice
     AttackSetting setting;
     setting.name = named.name;
@@ -205,11 +175,19 @@ void report_agent(const LatticeWorld& world, const std::filesystem::path& file, 
 int main(int argc, char** argv) {
   using namespace maximin::deep;
   prepare_runtime();
+  CLI::App app("What trained agents are worth on the lattice against the exact optimal attacker.", "deep_ceiling");
+  Settings settings;
+  declare(app, settings);
   try {
-    const Settings settings = parse(argc, argv);
+    app.parse(argc, argv);
+    settings.lattice.spacing = 0.5 / settings.steps;
+    settings.lattice.diagonal =
+        settings.interpolated ? maximin::DiagonalMove::interpolated : maximin::DiagonalMove::nearest;
     const LatticeWorld world(settings.lattice);
     report_world(world, settings.beliefs);
     for (const auto& file : settings.files) report_agent(world, file, settings);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
   } catch (const maximin::InputError& e) {
     fmt::print(stderr, "deep_ceiling: {}\n", e.what());
     return 2;

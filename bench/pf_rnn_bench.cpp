@@ -11,6 +11,7 @@
 #include <maximin/deep/pf_rnn_belief.hpp>
 #include <maximin/deep/pf_rnn_training.hpp>
 #include <maximin/deep/prediction_errors.hpp>
+#include <maximin/deep/runtime.hpp>
 #include <maximin/deep/tensor_file.hpp>
 
 namespace {
@@ -73,7 +74,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: pf_rnn_bench EPS [name=value...]\n");
     return 2;
   }
-  torch::set_num_threads(1);
+  prepare_runtime();
   const auto given = settings(argc, argv);
   const bool published = given.contains("published");
   const double eps = std::stod(argv[1]);

@@ -136,6 +136,7 @@ void visit_fields(WocarLossOptions& o, Visitor& visit) {
   visit("reach_bounds", o.reach_bounds);
   visit("robust_bounds", o.robust_bounds);
   visit("critic_eps", o.critic_eps);
+  visit("critic_floor", o.critic_floor);
   visit("reach_of_acting_values", o.reach_of_acting_values);
   visit("reach_at_state", o.reach_at_state);
   visit("critic_target_network", o.critic_target_network);

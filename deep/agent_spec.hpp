@@ -28,12 +28,13 @@ struct AgentSpec {
   double eps = 0.1;          ///< radius of the ball that it is trained to withstand and believes in
   QNetworkShape network;
   std::string loss = "td";  ///< td, sa, wocar, radial, car; "loss_options" in files are those of it:
-  /// As in their papers, but that all have CROWN's bounds, for with intervals alone they unlearn the Gridworld, and
-  /// Radial-DQN's overlap is of merged bounds of differences.
+  /// As in their papers but for three things. Radial-DQN, CAR-DQN and WocaR-DQN have CROWN's bounds. Radial-DQN's
+  /// overlap is of merged bounds of differences. WocaR-DQN's critic has a floor, the discounted cost of never arriving,
+  /// -100 rewards.
   SaLossOptions sa;
   RadialLossOptions radial{.bounds = BoundMethod::crown, .overlap = RadialOverlap::merged_difference};
   CarLossOptions car{.bounds = BoundMethod::crown};
-  WocarLossOptions wocar{.reach_bounds = BoundMethod::crown, .robust_bounds = BoundMethod::crown};
+  WocarLossOptions wocar{.reach_bounds = BoundMethod::crown, .robust_bounds = BoundMethod::crown, .critic_floor = -2};
   std::string belief = "observed";  ///< observed; or ball, exact, pf-lstm, pf-gru, and X-mean, the mean of X alone
   long belief_trajectories = 0;     ///< of clean play, all that a particle filter is taught; 0: as many as it takes
   PfRnnOptions particle_filter;     ///< in files where the belief is one; but for its cell, radius and seed, which
@@ -93,6 +94,12 @@ AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, const Ef
 /// own network and scale of rewards. Empty where it begins with nothing. Throws InputError where that would be called
 /// as the agent itself.
 std::optional<AgentSpec> beginning_of(const AgentSpec& spec, const Effort& effort = {});
+
+/// Training seed of the vanilla agent by whose values attacks on the whole defence go: none that a training of `seed`
+/// began with or was attacked by.
+inline std::uint64_t judge_seed(std::uint64_t seed) {
+  return 1'000'000 + seed;
+}
 
 /// Whether the two are trained in the same way: all is the same but perhaps a radius that has no part in it.
 bool same_training(const AgentSpec& a, const AgentSpec& b);

@@ -13,6 +13,7 @@ namespace maximin::deep {
 
 /// What is held possible in n lanes: K states for each, with weights that sum to 1. States are tensors, so that a state
 /// may be a place or, later, an image.
+/// Contiguous floats on the CPU.
 struct BeliefStates {
   torch::Tensor states;   ///< [n, K, state...]
   torch::Tensor weights;  ///< [n, K]

@@ -100,11 +100,10 @@ EpisodeTrace trace_episode(GridAgent& agent, GridAttack& attack, const Observati
   WatchedAttack bounded(attack, ball);
   TraceBelief belief;
   watched.looked = [&](std::span<const Lane> lanes) { belief = agent.picture(lanes[0]); };
-  EpisodesInStep options = paper_episodes(number + 1, seed);
-  options.lanes = 1;
-  rollout_in_step(world, watched, bounded, options, [&](long k, const StepRecord<Point, Point, Action>& record) {
-    if (k == number) trace.add(record, belief);
-  });
+  EpisodesInStep options = paper_episodes(1, seed);
+  options.first = number;
+  rollout_in_step(world, watched, bounded, options,
+                  [&](long, const StepRecord<Point, Point, Action>& record) { trace.add(record, belief); });
   return trace;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -97,20 +98,22 @@ Interval feature_interval(const QNetwork& q, const StateBox& box) {
   const Tensor a = q.features(box.low), b = q.features(box.high);
   const long inputs = q.shape().inputs;
   Interval out{torch::minimum(a, b), torch::maximum(a, b)};
-  double frequency = M_PI;
+  double frequency = std::numbers::pi;
   for (long w = 0; w < q.shape().waves; ++w, frequency *= 2) {
     const Tensor low = box.low * frequency, high = box.high * frequency;
     const Tensor slack = machine_epsilon(low) * (4 + 2 * torch::maximum(low.abs(), high.abs()));
     // sin has its crests at pi/2 + 2 pi k, cos at 2 pi k; troughs lie half a turn on.
     const auto passes = [&](double phase) {
-      return torch::floor((high + slack - phase) / (2 * M_PI)) >= torch::ceil((low - slack - phase) / (2 * M_PI));
+      return torch::floor((high + slack - phase) / (2 * std::numbers::pi)) >=
+             torch::ceil((low - slack - phase) / (2 * std::numbers::pi));
     };
     for (const int cosine : {0, 1}) {
       const long column = inputs * (1 + 2 * w + cosine);
-      const double crest = cosine != 0 ? 0 : M_PI / 2;
+      const double crest = cosine != 0 ? 0 : std::numbers::pi / 2;
       Tensor least = out.low.narrow(1, column, inputs), most = out.high.narrow(1, column, inputs);
       most.copy_(torch::where(passes(crest), torch::ones_like(most), (most + slack).clamp_max(1)));
-      least.copy_(torch::where(passes(crest + M_PI), -torch::ones_like(least), (least - slack).clamp_min(-1)));
+      least.copy_(
+          torch::where(passes(crest + std::numbers::pi), -torch::ones_like(least), (least - slack).clamp_min(-1)));
     }
   }
   return out;

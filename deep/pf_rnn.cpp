@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <maximin/deep/q_network.hpp>
 #include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -17,17 +18,6 @@ constexpr long action_count = ContinuousGridworld::actions;
 constexpr long first_layer = 128;
 /// An innovation beyond this many eps says no more than this one: the move was not made, or was.
 constexpr double innovation_limit = 4;
-
-torch::nn::Linear linear(long inputs, long outputs, Stream& rng) {
-  torch::NoGradGuard no_grad;
-  torch::nn::Linear layer(inputs, outputs);
-  const double bound = 1 / std::sqrt(static_cast<double>(inputs));
-  for (torch::Tensor parameter : {layer->weight, layer->bias}) {
-    float* values = parameter.data_ptr<float>();
-    for (long i = 0; i < parameter.numel(); ++i) values[i] = static_cast<float>(rng.uniform(-bound, bound));
-  }
-  return layer;
-}
 
 float innovation(double shown, double expected, double eps) {
   return static_cast<float>(std::clamp((shown - expected) / eps, -innovation_limit, innovation_limit));
@@ -114,15 +104,15 @@ PfRnn::PfRnn(const PfRnnOptions& options, Stream& rng) : options_(options) {
   options_.check();
   const long h = options_.hidden, e = options_.embedding;
   const bool lstm = options_.cell == PfCell::lstm;
-  embed_ = register_module("embed", linear(feature_count(), first_layer, rng));
-  embed_more_ = register_module("embed_more", linear(first_layer, e, rng));
+  embed_ = register_module("embed", linear_layer(feature_count(), first_layer, rng));
+  embed_more_ = register_module("embed_more", linear_layer(first_layer, e, rng));
   // PF-LSTM: f, i, o, mean, spread of g. PF-GRU: z, r, and mean and spread of n, which see r h instead of h.
-  from_input_ = register_module("from_input", linear(e, (lstm ? 5 : 4) * h, rng));
-  from_hidden_ = register_module("from_hidden", linear(h, (lstm ? 5 : 2) * h, rng));
-  if (!lstm) candidate_from_hidden_ = register_module("candidate_from_hidden", linear(h, 2 * h, rng));
+  from_input_ = register_module("from_input", linear_layer(e, (lstm ? 5 : 4) * h, rng));
+  from_hidden_ = register_module("from_hidden", linear_layer(h, (lstm ? 5 : 2) * h, rng));
+  if (!lstm) candidate_from_hidden_ = register_module("candidate_from_hidden", linear_layer(h, 2 * h, rng));
   const bool bilinear = options_.weighing == PfWeighing::bilinear;
-  weigh_ = register_module("weigh", bilinear ? linear(e, h, rng) : linear(h, 1, rng));
-  read_ = register_module("read", linear(h, 2, rng));
+  weigh_ = register_module("weigh", bilinear ? linear_layer(e, h, rng) : linear_layer(h, 1, rng));
+  read_ = register_module("read", linear_layer(h, 2, rng));
   candidate_ = register_module("candidate", std::make_shared<PfCandidate>(options_));
   torch::NoGradGuard no_grad;
   // A forget gate that starts open remembers from the first update on.

@@ -61,7 +61,7 @@ std::array<std::uint32_t, 2> key_of(Point first, std::uint64_t seed) {
   return {words[0], words[1]};
 }
 
-/// Uniform on (0, 1).
+/// Uniform on (0, 1], as far as a float tells.
 float uniform_float(std::uint32_t word) {
   return (static_cast<float>(word >> 8) + 0.5F) * 0x1p-24F;
 }

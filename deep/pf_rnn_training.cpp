@@ -124,7 +124,7 @@ torch::Tensor window_loss(PfRnn& module, Lanes& lanes, PfState& state, const PfT
 }
 
 void set_learning_rate(torch::optim::RMSprop& optimizer, double rate) {
-  for (auto& group : optimizer.param_groups()) static_cast<torch::optim::RMSpropOptions&>(group.options()).lr(rate);
+  for (auto& group : optimizer.param_groups()) group.options().set_lr(rate);
 }
 
 double rate_at(long update, const PfTrainingOptions& options) {
@@ -145,6 +145,10 @@ void PfTrainingOptions::check(const PfRnnOptions& shape) const {
   require(actions_drawn >= 1 && actions_drawn <= 8, "actions_drawn", actions_drawn, "1 to 8");
   require(trajectories >= 0, "trajectories", double(trajectories), "0 or more");
   require(learning_rate > 0, "learning_rate", learning_rate, "above 0, e.g. 0.0005");
+  require(clip > 0, "clip", clip, "above 0, e.g. 3");
+  require(mean_weight >= 0, "mean_weight", mean_weight, "0 or more");
+  require(elbo_weight >= 0, "elbo_weight", elbo_weight, "0 or more");
+  require(time_weight >= 0 && time_weight <= 1, "time_weight", time_weight, "0 to 1");
   require(dropout >= 0 && dropout < 1, "dropout", dropout, "0 to below 1");
   require(kernel >= 0, "kernel", kernel, "0 or more, e.g. 0.25");
   require(shape.normalisation != PfNormalisation::batch || particles == 0 || particles == shape.particles, "particles",
@@ -193,7 +197,12 @@ void train_pf_rnn(PfRnn& module, const PfTrainingOptions& options,
     now.update = update;
     const torch::Tensor loss = window_loss(module, lanes, state, options, generator, now);
     now.loss = loss.item<double>();
-    if (!std::isfinite(now.loss)) throw std::runtime_error("PF-RNN training: the loss is no longer finite");
+    if (!std::isfinite(now.loss)) {
+      throw InputError(
+          fmt::format("PF-RNN training: the loss is {} at update {}, expected a number, as with a smaller "
+                      "learning_rate",
+                      now.loss, update));
+    }
     optimizer.zero_grad();
     loss.backward();
     torch::nn::utils::clip_grad_norm_(module.parameters(), options.clip);

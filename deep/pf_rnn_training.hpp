@@ -61,7 +61,7 @@ struct PfTrainingProgress {
 
 /// Trains the module, whose device must be the CPU, and leaves it in evaluation mode. The same options are the same
 /// module. `progress` is called after every update; training ends early when it returns false. Throws InputError when
-/// an option is out of range, std::runtime_error when the loss is no longer finite.
+/// an option is out of range or the loss is no longer finite.
 void train_pf_rnn(PfRnn& module, const PfTrainingOptions& options,
                   const std::function<bool(const PfTrainingProgress&)>& progress = {});
 

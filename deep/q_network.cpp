@@ -1,27 +1,27 @@
 #include <maximin/deep/q_network.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
 namespace maximin::deep {
-namespace {
 
-void fill_uniform(torch::Tensor parameter, double bound, Stream& rng) {
-  float* values = parameter.data_ptr<float>();
-  for (long i = 0; i < parameter.numel(); ++i) values[i] = static_cast<float>(rng.uniform(-bound, bound));
+torch::nn::Linear linear_layer(long inputs, long outputs, Stream& rng) {
+  torch::NoGradGuard no_grad;
+  torch::nn::Linear layer(inputs, outputs);
+  const double bound = 1 / std::sqrt(static_cast<double>(inputs));
+  for (torch::Tensor parameter : {layer->weight, layer->bias}) {
+    float* values = parameter.data_ptr<float>();
+    for (long i = 0; i < parameter.numel(); ++i) values[i] = static_cast<float>(rng.uniform(-bound, bound));
+  }
+  return layer;
 }
 
-}  // namespace
-
 QNetwork::QNetwork(QNetworkShape shape, Stream& rng) : shape_(std::move(shape)) {
-  torch::NoGradGuard no_grad;
   long width = shape_.inputs * (1 + 2 * shape_.waves);
   const auto add = [&](long outputs) {
-    torch::nn::Linear layer(width, outputs);
-    const double bound = 1 / std::sqrt(static_cast<double>(width));
-    fill_uniform(layer->weight, bound, rng);
-    fill_uniform(layer->bias, bound, rng);
+    const torch::nn::Linear layer = linear_layer(width, outputs, rng);
     layers_.push_back(register_module("layer" + std::to_string(layers_.size()), layer));
     width = outputs;
   };
@@ -33,7 +33,7 @@ torch::Tensor QNetwork::features(const torch::Tensor& states) const {
   const torch::Tensor scaled = (states - shape_.input_centre) * shape_.input_scale;
   if (shape_.waves == 0) return scaled;
   std::vector<torch::Tensor> parts{scaled};
-  double frequency = M_PI;
+  double frequency = std::numbers::pi;
   for (long w = 0; w < shape_.waves; ++w, frequency *= 2) {
     parts.push_back(torch::sin(states * frequency));
     parts.push_back(torch::cos(states * frequency));

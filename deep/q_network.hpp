@@ -76,4 +76,8 @@ using QNetworkPtr = std::shared_ptr<QNetwork>;
 /// Another network of the same shape and weights, on the same device, which needs no gradients.
 QNetworkPtr frozen_copy(const QNetwork& q);
 
+/// A linear layer whose weights and biases are drawn uniformly from +-1/sqrt(inputs): the same stream, the same layer
+/// with every version of LibTorch.
+torch::nn::Linear linear_layer(long inputs, long outputs, Stream& rng);
+
 }  // namespace maximin::deep

@@ -128,7 +128,10 @@ AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, const Ef
   s.kind = kind;
   // The same vanilla agent, whatever it will be attacked with.
   if (s.knows_eps()) s.eps = eps;
-  if (effort.quick) shorten(s.training, static_cast<long>(static_cast<double>(s.training.frames) * quick_share));
+  if (effort.quick) {
+    shorten(s.training, static_cast<long>(static_cast<double>(s.training.frames) * quick_share));
+    s.particle_filter_training.updates = 200;
+  }
   if (effort.frames > 0) shorten(s.training, effort.frames);
   return s;
 }

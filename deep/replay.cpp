@@ -76,6 +76,8 @@ void Replay::add(const Transition& t, const BeliefStates& next_belief, long row)
   rewards_.data_ptr<float>()[i] = static_cast<float>(t.reward);
   terminal_.data_ptr<float>()[i] = t.terminal ? 1.0F : 0.0F;
   const long k = beliefs_.size(1);
+  TORCH_INTERNAL_ASSERT(t.terminal || (next_belief.states.is_contiguous() && next_belief.states.size(1) == k &&
+                                       next_belief.states.scalar_type() == torch::kFloat));
   float* belief = beliefs_.data_ptr<float>() + 2 * k * i;
   float* weight = belief_weights_.data_ptr<float>() + k * i;
   if (t.terminal) {

@@ -123,8 +123,7 @@ void write_tensor_file(const std::filesystem::path& path, const TensorFile& cont
   std::string bytes(magic);
   bytes += nlohmann::ordered_json{{"kind", content.kind}, {"about", content.about}, {"tensors", list}}.dump() + '\n';
   for (const auto& [name, tensor] : content.tensors) {
-    const torch::Tensor dense = tensor.detach().to(torch::kCPU).contiguous();
-    bytes.append(static_cast<const char*>(dense.data_ptr()), dense.nbytes());
+    bytes += bytes_of_tensor(tensor);
   }
   const std::uint32_t crc = crc_of(bytes);
   bytes.append(reinterpret_cast<const char*>(&crc), checksum_bytes);
@@ -181,12 +180,14 @@ torch::Tensor tensor_of_bytes(const std::string& bytes) {
 }
 
 std::string bytes_of_tensor(const torch::Tensor& tensor) {
-  return {static_cast<const char*>(tensor.data_ptr()), tensor.nbytes()};
+  const torch::Tensor dense = tensor.detach().to(torch::kCPU).contiguous();
+  return {static_cast<const char*>(dense.data_ptr()), dense.nbytes()};
 }
 
 std::uint32_t checksum_of(const torch::nn::Module& module) {
   std::string bytes;
   for (const torch::Tensor& tensor : module.parameters()) bytes += bytes_of_tensor(tensor);
+  for (const torch::Tensor& tensor : module.buffers()) bytes += bytes_of_tensor(tensor);
   return crc_of(bytes);
 }
 

@@ -35,7 +35,7 @@ TensorFile read_tensor_file(const std::filesystem::path& path, const std::string
 torch::Tensor tensor_of_bytes(const std::string& bytes);
 std::string bytes_of_tensor(const torch::Tensor& tensor);
 
-/// A checksum (CRC-32) of all weights of a module.
+/// A checksum (CRC-32) of all weights and running statistics of a module.
 std::uint32_t checksum_of(const torch::nn::Module& module);
 
 /// All parameters and buffers of a module, as PREFIX.NAME; they share their numbers with the module.

@@ -41,9 +41,8 @@ std::optional<TrainedAgent> finished(const AgentSpec& spec, const fs::path& path
 
 /// A particle filter for the belief, trained in one go: it takes minutes, and the same seed gives the same filter. What
 /// follows keeps it in its checkpoints. False where the hook stopped it.
-bool train_particle_filter(TrainedAgent& agent, bool quick, const TrainingHooks& hooks) {
-  PfTrainingOptions options = training_of_filter(agent.spec);
-  if (quick) options.updates = 200;
+bool train_particle_filter(TrainedAgent& agent, const TrainingHooks& hooks) {
+  const PfTrainingOptions options = training_of_filter(agent.spec);
   const Stopwatch watch;
   agent.particle_filter = untrained_filter(agent.spec);
   const long frames_per_update = options.batch * options.window;
@@ -117,7 +116,7 @@ bool prepare(TrainedAgent& agent, const fs::path& folder, torch::Device device, 
     if (auto* wocar = dynamic_cast<WocarLoss*>(agent.loss.get())) wocar->start_from(*start->q);
   }
   const bool lacks_filter = spec.has_particle_filter() && !agent.particle_filter;
-  return !lacks_filter || train_particle_filter(agent, effort.quick, hooks);
+  return !lacks_filter || train_particle_filter(agent, hooks);
 }
 
 }  // namespace
@@ -138,6 +137,20 @@ std::vector<std::optional<double>> training_row(const CurvePoint& p) {
           number(p.belief_size)};
 }
 
+TrainingParts training_parts(const TrainedAgent& agent, torch::Device device) {
+  const AgentSpec& spec = agent.spec;
+  Acting acting = acting_of(spec);
+  acting.belief_states = spec.training_belief_states;
+  TrainingParts parts;
+  parts.online = agent.q;
+  parts.belief = make_belief(acting, spec.eps, agent.particle_filter);
+  parts.aggregator = aggregator_named(spec.aggregator);
+  parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values_in_rewards(), *agent.q);
+  parts.loss = agent.loss;
+  parts.device = device;
+  return parts;
+}
+
 std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& folder, torch::Device device,
                                         const Effort& effort, const TrainingHooks& hooks) {
   const Files files(folder, spec.name());
@@ -152,16 +165,7 @@ std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& f
   const auto checkpoint = read_checkpoint(files.checkpoint, agent);
   if (!prepare(agent, folder, device, effort, hooks)) return std::nullopt;
 
-  TrainingParts parts;
-  parts.online = agent.q;
-  Acting acting = acting_of(spec);
-  acting.belief_states = spec.training_belief_states;
-  parts.belief = make_belief(acting, spec.eps, agent.particle_filter);
-  parts.aggregator = aggregator_named(spec.aggregator);
-  parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values_in_rewards(), *agent.q);
-  parts.loss = agent.loss;
-  parts.device = device;
-  Trainer trainer(spec.training, parts);
+  Trainer trainer(spec.training, training_parts(agent, device));
   if (checkpoint) reading(files.checkpoint, [&] { trainer.load(*checkpoint); });
   const double before = agent.training_seconds;
   const Stopwatch watch;
@@ -176,6 +180,7 @@ std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& f
   }
   agent.training_seconds = before + watch.seconds();
   agent.q->to(torch::kCPU);
+  for (const auto& module : agent.loss->modules()) module->to(torch::kCPU);
   write_agent(files.agent, agent);
   fs::remove(files.checkpoint, ignored);
   return agent;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <maximin/deep/agent_fields.hpp>
 #include <maximin/deep/mean_state.hpp>
 #include <maximin/deep/report/json_fields.hpp>
 #include <maximin/deep/set_beliefs.hpp>
@@ -84,9 +85,14 @@ std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Actin
 }
 
 std::string identity_of(const TrainedAgent& trained, const Acting& acting) {
-  const std::uint32_t filter = trained.particle_filter ? checksum_of(*trained.particle_filter) : 0;
-  return fmt::format("{} {:08x} {:08x}, {} of {}, random {:g}", trained.spec.name(), checksum_of(*trained.values()),
-                     filter, acting.aggregator, acting.belief, acting.random_actions);
+  std::string belief = fmt::format("{} of {} states", acting.belief, acting.belief_states);
+  if (trained.particle_filter) {
+    PfBeliefOptions options = acting.filter_belief;
+    belief = fmt::format("{} {:08x} {}", acting.belief, checksum_of(*trained.particle_filter),
+                         FieldWriter::json_of(options).dump());
+  }
+  return fmt::format("{} {:08x}, {} of {}, random {:g}", trained.spec.name(), checksum_of(*trained.values()),
+                     acting.aggregator, belief, acting.random_actions);
 }
 
 TrainedAgent untrained(const AgentSpec& spec) {

@@ -55,7 +55,7 @@ std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const 
 /// An agent out of its parts, for episodes in step.
 std::unique_ptr<BeliefAgent> make_agent(const TrainedAgent& trained, const Acting& acting);
 
-/// Tells the agent, as it acts, from others: name, how it acts, a checksum of all weights.
+/// Tells the agent, as it acts, from others: name, all of how it acts, checksums of all weights.
 std::string identity_of(const TrainedAgent& trained, const Acting& acting);
 
 /// Networks before training.
@@ -65,6 +65,9 @@ TrainedAgent untrained(const AgentSpec& spec);
 /// NAME.times.json. Throws InputError as tensor files do.
 void write_agent(const std::filesystem::path& path, const TrainedAgent& agent);
 TrainedAgent read_agent(const std::filesystem::path& path);
+
+/// What a trainer needs of the agent, which must outlive it: its network, belief, attack and loss.
+TrainingParts training_parts(const TrainedAgent& agent, torch::Device device = torch::kCPU);
 
 /// Its particle filter before training.
 PfRnnPtr untrained_filter(const AgentSpec& spec);

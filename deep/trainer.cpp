@@ -51,6 +51,11 @@ void TrainOptions::check() const {
 Trainer::Trainer(const TrainOptions& options, TrainingParts parts)
     : options_(options), parts_(std::move(parts)), replay_(options.replay, parts_.belief->states_per_belief()) {
   options_.check();
+  const long outputs = parts_.online->shape().actions, actions = parts_.world->actions();
+  if (outputs != actions) {
+    throw InputError(
+        fmt::format("training: a network of {} actions in a world of {}, expected as many", outputs, actions));
+  }
   parts_.online->to(parts_.device);
   target_ = frozen_copy(*parts_.online);
   average_ = frozen_copy(*parts_.online);
@@ -120,12 +125,9 @@ void Trainer::look(std::span<const Lane> lanes) {
 /// Keeps the beliefs that the last look came to.
 void Trainer::hold(std::span<const Lane> lanes) {
   const BeliefStates& seen = agent_->acted_on();
-  const long k = held_.weights.size(1);
-  for (std::size_t row = 0; row < lanes.size(); ++row) {
-    const long from = static_cast<long>(row), to = lanes[row];
-    std::copy_n(seen.states.data_ptr<float>() + 2 * k * from, 2 * k, held_.states.data_ptr<float>() + 2 * k * to);
-    std::copy_n(seen.weights.data_ptr<float>() + k * from, k, held_.weights.data_ptr<float>() + k * to);
-  }
+  const torch::Tensor rows = torch::tensor(std::vector<Lane>(lanes.begin(), lanes.end()), torch::kLong);
+  held_.states.index_copy_(0, rows, seen.states);
+  held_.weights.index_copy_(0, rows, seen.weights);
 }
 
 /// Stores the transitions that waited for the next belief, and begins episodes anew where one was cut.
@@ -190,7 +192,7 @@ void Trainer::learn(CurvePoint& point, long& updates) {
   const double fraction = static_cast<double>(frames_) / static_cast<double>(options_.frames);
   const double rate =
       options_.learning_rate + std::min(1.0, fraction) * (options_.final_learning_rate - options_.learning_rate);
-  static_cast<torch::optim::AdamOptions&>(optimiser_->param_groups()[0].options()).lr(rate);
+  optimiser_->param_groups()[0].options().set_lr(rate);
   for (; owed_ >= 1; owed_ -= 1) {
     const Replay::Draw draw = replay_.draw(options_.batch, fraction, draws_, parts_.device);
     const LossValue value = (*parts_.loss)(draw.batch, *parts_.online, *target_, {fraction});

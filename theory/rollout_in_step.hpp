@@ -109,12 +109,14 @@ struct EpisodesInStep {
   long episodes = 100;
   std::uint64_t seed = 1;  ///< episode k draws from Stream(seed, k)
   Lane lanes = 64;         ///< how many run at once
+  long first = 0;          ///< number of the first episode
 };
 
 /// Plays the episodes, as many in step as there are lanes; a lane whose episode is over takes the next one. Returns
-/// them in order of their number. Episode k is what `rollout` plays with Stream(seed, k), whatever the lanes, as far as
-/// the agent's and the attack's answers do not depend on who is asked with them (a network's may, in the last digit).
-/// `observe(k, record)` is called after every step of episode k. Throws InputError when there is less than one lane.
+/// them in order of their numbers, from `first` on. Episode k is what `rollout` plays with Stream(seed, k), whatever
+/// the lanes, as far as the agent's and the attack's answers do not depend on who is asked with them (a network's may,
+/// in the last digit). `observe(k, record)` is called after every step of episode k. Throws InputError when there is
+/// less than one lane.
 template <Environment Env, AgentInStep AgentT, class AttackT, class Observer>
 requires AttackInStep<AttackT, typename Env::StateType, AgentT> std::vector<Episode> rollout_in_step(
     Env& env, AgentT& agent, AttackT& attack, const EpisodesInStep& options, Observer&& observe) {
@@ -130,7 +132,7 @@ requires AttackInStep<AttackT, typename Env::StateType, AgentT> std::vector<Epis
   std::vector<StateT> state(width);
   std::vector<long> number(width);
   std::vector<Lane> lanes;
-  long next_episode = 0;
+  long next_episode = options.first;
   agent.resize(static_cast<Lane>(width));
   attack.resize(static_cast<Lane>(width));
   const auto begin = [&](std::size_t l) {
@@ -159,7 +161,7 @@ requires AttackInStep<AttackT, typename Env::StateType, AgentT> std::vector<Epis
     std::vector<Lane> running;
     for (std::size_t k = 0; k < lanes.size(); ++k) {
       const auto l = static_cast<std::size_t>(lanes[k]);
-      const auto e = static_cast<std::size_t>(number[l]);
+      const auto e = static_cast<std::size_t>(number[l] - options.first);
       const Outcome<StateT> outcome = env.step(state[l], actions[k], streams[l]);
       episodes[e].discounted_return += weight[e] * outcome.reward;
       episodes[e].total_reward += outcome.reward;
@@ -171,7 +173,7 @@ requires AttackInStep<AttackT, typename Env::StateType, AgentT> std::vector<Epis
       state[l] = outcome.next;
       if (!outcome.terminal && episodes[e].steps < options.horizon) {
         running.push_back(lanes[k]);
-      } else if (next_episode < options.episodes) {
+      } else if (next_episode < options.first + options.episodes) {
         begin(l);
         running.push_back(lanes[k]);
       }

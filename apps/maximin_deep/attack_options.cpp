@@ -12,8 +12,8 @@ void add_attack_options(CLI::App& sub, AttackedAgent& o) {
       ->check(real_number({.low = 0, .high = 5}));
   sub.add_option(
       "--judge", o.judge,
-      "Agent file whose values adaptive attacks go by; unless given, the vanilla agent of the same seed beside "
-      "the file, else the agent itself");
+      "Agent file whose values adaptive attacks go by; unless given, the vanilla agent beside the file that judges in "
+      "tables (seed 1000000 + its own), else that of its own seed, else the agent itself");
   sub.add_option("--belief", o.change.belief,
                  "In place of the agent's own: observed, ball, exact, pf-lstm, pf-gru; X-mean: the mean of X")
       ->check(one_of(deep::belief_names()));
@@ -27,12 +27,15 @@ void add_attack_options(CLI::App& sub, AttackedAgent& o) {
 
 namespace {
 
-/// The agent file that an attack on the whole defence goes by: what is named, else the vanilla agent of the same seed
-/// beside the agent, if there is one.
+/// The agent file that an attack on the whole defence goes by: what is named, else beside the agent the vanilla one
+/// that judges in tables, which no training saw, or that of the agent's own seed, where there is one.
 std::filesystem::path judge_of(const AttackedAgent& o, const deep::AgentSpec& spec) {
   if (!o.judge.empty()) return o.judge;
-  std::filesystem::path vanilla = o.file.parent_path() / fmt::format("dqn-seed{}.agent", spec.training.seed);
-  return std::filesystem::exists(vanilla) ? vanilla : std::filesystem::path();
+  for (const std::uint64_t seed : {deep::judge_seed(spec.training.seed), spec.training.seed}) {
+    std::filesystem::path vanilla = o.file.parent_path() / fmt::format("dqn-seed{}.agent", seed);
+    if (std::filesystem::exists(vanilla)) return vanilla;
+  }
+  return {};
 }
 
 }  // namespace

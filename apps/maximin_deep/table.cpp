@@ -76,10 +76,6 @@ class TableMaker {
   }
 
  private:
-  /// Of the vanilla agent by whose values attacks on the whole defence go: none that a training began with or was
-  /// attacked by.
-  static std::uint64_t judge_seed(std::uint64_t seed) { return 1'000'000 + seed; }
-
   static std::uint64_t evaluation_seed(std::uint64_t training_seed) { return 1000 + training_seed; }
 
   /// The file's configuration is this table's: so must its runs be.
@@ -128,7 +124,9 @@ class TableMaker {
     }
     for (const PlannedCell& cell : plan_) {
       deep::ResultBlock* block = table.find(cell.block);
-      if (!block) block = &table.blocks.emplace_back(deep::ResultBlock{cell.block, block_note(cell.block), {}});
+      if (!block)
+        block =
+            &table.blocks.emplace_back(deep::ResultBlock{cell.block, block_note(cell.block, command_.effort()), {}});
       block->cells.push_back(cell.cell);
     }
     return table;
@@ -145,7 +143,7 @@ class TableMaker {
         specs.push_back(deep::recipe(cell.filter_of, cell.trained_eps, command_.seed(k), command_.effort()));
       }
       specs.push_back(vanilla_spec(command_.seed(k)));
-      specs.push_back(vanilla_spec(judge_seed(command_.seed(k))));
+      specs.push_back(vanilla_spec(deep::judge_seed(command_.seed(k))));
     }
     train_side_by_side(std::move(specs), command_.folder, torch::kCPU, command_.effort(), command_.jobs, line_, stop_);
   }
@@ -233,8 +231,9 @@ class TableMaker {
                             100 * share));
       return !stop_.load();
     };
-    return {ready.make_agent(), deep::make_attack(setting, {ready.values, vanilla(judge_seed(seed)).values_in_rewards(),
-                                                            ready.identity, ready.unit, ready.make_agent})};
+    return {ready.make_agent(),
+            deep::make_attack(setting, {ready.values, vanilla(deep::judge_seed(seed)).values_in_rewards(),
+                                        ready.identity, ready.unit, ready.make_agent})};
   }
 
   std::optional<deep::SeedRun> evaluate_cell(const PlannedCell& cell, std::uint64_t seed, deep::ResultCell& measured) {

@@ -33,10 +33,10 @@ std::vector<PlannedCell> gridworld_plan();
 std::vector<PlannedCell> aggregators_plan();
 
 /// What stands above a block: how its agents were trained, what its attacks know.
-std::string block_note(const std::string& block);
+std::string block_note(const std::string& block, const deep::Effort& effort);
 
-/// Cells that follow from others: for every agent and radius the attack of the block of further attacks that left it
-/// least. Replaces the block of that name.
+/// Cells that follow from others: for every agent and radius the attack, of the paper's or the further ones, that left
+/// it least. Replaces the block of that name.
 void add_strongest(deep::ResultTable& table);
 
 }  // namespace maximin::apps

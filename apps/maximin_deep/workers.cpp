@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <set>
 #include <thread>
 #include <utility>
@@ -14,10 +15,6 @@ namespace maximin::apps {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-unsigned long this_thread() {
-  return static_cast<unsigned long>(std::hash<std::thread::id>{}(std::this_thread::get_id()));
-}
 
 std::string duration(double seconds) {
   if (seconds < 90) return fmt::format("{:.0f} s", seconds);
@@ -64,14 +61,18 @@ std::vector<std::optional<deep::TrainedAgent>> train_side_by_side(std::vector<de
     const auto first = deep::beginning_of(specs[i], effort);
     if (first && names.insert(first->name()).second) specs.push_back(*first);
   }
-  const auto begins_with_nothing = [](const deep::AgentSpec& s) { return s.start_from.empty(); };
-  std::stable_partition(specs.begin(), specs.end(), begins_with_nothing);
+  // What others begin with comes before them, each training once.
+  std::map<int, std::vector<std::size_t>> by_depth;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    int depth = 0;
+    for (auto first = deep::beginning_of(specs[i], effort); first; first = deep::beginning_of(*first, effort)) ++depth;
+    by_depth[depth].push_back(i);
+  }
   std::vector<std::optional<deep::TrainedAgent>> trained(specs.size());
   std::atomic<long> done = 0;
-  for (const bool first : {true, false}) {
+  for (const auto& [depth, of_depth] : by_depth) {
     std::vector<std::function<void()>> jobs;
-    for (std::size_t i = 0; i < specs.size(); ++i) {
-      if (begins_with_nothing(specs[i]) != first) continue;
+    for (const std::size_t i : of_depth) {
       jobs.emplace_back([&, i] {
         trained[i] = deep::train_agent(specs[i], folder, device, effort, line.hooks(stop));
         line.say("");
@@ -97,9 +98,9 @@ void WorkLine::show() {
 void WorkLine::say(const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (text.empty()) {
-    lines_.erase(this_thread());
+    lines_.erase(std::this_thread::get_id());
   } else {
-    lines_[this_thread()] = text;
+    lines_[std::this_thread::get_id()] = text;
   }
   show();
 }

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <maximin/apps/common/progress.hpp>
@@ -34,7 +35,7 @@ class WorkLine {
   void show();
 
   std::mutex mutex_;
-  std::map<unsigned long, std::string> lines_;  // of each thread
+  std::map<std::thread::id, std::string> lines_;  // of each thread
   long done_ = 0, of_ = 0;
   StageProgress progress_;
 };

@@ -1,6 +1,7 @@
 #include <maximin/deep/attacks/director.hpp>
 
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -31,7 +32,7 @@ float* Director::write_place(Lane lane, Point truth, float* out) const {
   const auto put = [&](double v) { *out++ = static_cast<float>(v); };
   for (const double v : {truth.x, truth.y}) {
     put((v - half) / half);
-    double frequency = M_PI;
+    double frequency = std::numbers::pi;
     for (long w = 0; w < options_.waves; ++w, frequency *= 2) {
       put(std::sin(frequency * v));
       put(std::cos(frequency * v));

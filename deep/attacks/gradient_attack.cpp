@@ -18,8 +18,12 @@ GradientAttackOptions gradient_attack_named(std::string_view name) {
     options.objective = AttackObjective::min_best;
     return options;
   }
+  if (name == "pgd-restarts") {
+    options.starts = 10;
+    return options;
+  }
   if (name != "pgd-released") {
-    throw InputError(fmt::format("gradient attack: {}, expected pgd, min-best or pgd-released", name));
+    throw InputError(fmt::format("gradient attack: {}, expected pgd, min-best, pgd-restarts or pgd-released", name));
   }
   options.objective = AttackObjective::cross_entropy;
   options.released_start = true;
@@ -29,7 +33,11 @@ GradientAttackOptions gradient_attack_named(std::string_view name) {
 
 GradientAttack::GradientAttack(std::shared_ptr<ActionValueModule> q, const ObservationBall& ball,
                                const GradientAttackOptions& options)
-    : q_(std::move(q)), ball_(ball), options_(options) {}
+    : q_(std::move(q)), ball_(ball), options_(options) {
+  if (options.steps < 0 || options.starts < 1 || !(options.step_share > 0)) {
+    throw InputError("gradient attack: steps below 0, or no starts or step, expected e.g. 10 steps of 0.1");
+  }
+}
 
 // What is differentiated.
 torch::Tensor GradientAttack::objective(const torch::Tensor& q_shown, const torch::Tensor& q_truth,

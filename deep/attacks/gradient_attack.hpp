@@ -21,7 +21,7 @@ struct GradientAttackOptions {
   AttackObjective objective = AttackObjective::value;
   int steps = 10;
   double step_share = 0.1;  ///< of eps, per step
-  int starts = 1;           ///< random starts; the best end is shown
+  int starts = 1;           ///< random starts; the best point of all is shown, unless the last is
   /// Of all points visited show that with the least objective, rather than the last: never weaker by its own measure.
   bool keep_best = true;
   /// As in the authors' released Gridworld code: the random start is clamped to [0,1] instead of the world (a bug: it
@@ -29,8 +29,8 @@ struct GradientAttackOptions {
   bool released_start = false;
 };
 
-/// By name: "pgd" and "min-best" are the paper's; "pgd-released" goes by cross-entropy, starts as released and shows
-/// where it ends. Throws InputError on another.
+/// By name: "pgd" and "min-best" are the paper's; "pgd-restarts" is PGD from 10 starts; "pgd-released" goes by
+/// cross-entropy, starts as released and shows where it ends. Throws InputError on another.
 GradientAttackOptions gradient_attack_named(std::string_view name);
 
 /// Projected gradient descent on the sign of the gradient, from a random start in the ball, on a network, not on the

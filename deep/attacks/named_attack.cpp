@@ -116,9 +116,11 @@ const std::vector<NamedAttack>& named_attacks() {
       {"constant-offset", "constant offset", Knowledge::truth},
       {"pgd", "PGD", Knowledge::network, false, true},
       {"pgd-released", "PGD as released", Knowledge::network},
+      {"pgd-restarts", "PGD from 10 starts", Knowledge::network},
       {"min-best", "MinBest", Knowledge::network, false, true},
       {"pa-ad", "PA-AD", Knowledge::network, true, true},
       {"best-response", "best response", Knowledge::defence},
+      {"best-response-steady", "best response, steady", Knowledge::defence},
       {"through-defence", "descent through the defence", Knowledge::defence},
       {"pa-ad-adaptive", "PA-AD against the whole defence", Knowledge::defence, true},
       {"director", "director against the whole defence", Knowledge::defence, true},
@@ -148,7 +150,11 @@ std::shared_ptr<GridAttack> make_attack(const AttackSetting& setting, const Atta
   if (name.starts_with("pgd") || name == "min-best") {
     return std::make_shared<GradientAttack>(target.values, ball, gradient_attack_named(name));
   }
-  if (name == "best-response") return std::make_shared<BestResponseAttack>(target.judge, ball, BestResponseOptions{});
+  if (name.starts_with("best-response")) {
+    BestResponseOptions options;
+    options.steady = name == "best-response-steady";
+    return std::make_shared<BestResponseAttack>(target.judge, ball, options);
+  }
   if (name == "through-defence") {
     ThroughDefenceOptions options;
     options.unit = target.unit;

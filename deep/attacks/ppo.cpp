@@ -94,7 +94,7 @@ torch::Tensor Ppo::loss(const Experience& part) {
 void Ppo::learn(const Experience& experience, double fraction, Stream& rng) {
   const double rate =
       options_.learning_rate + std::min(1.0, fraction) * (options_.final_learning_rate - options_.learning_rate);
-  static_cast<torch::optim::AdamOptions&>(optimiser_.param_groups()[0].options()).lr(rate);
+  optimiser_.param_groups()[0].options().set_lr(rate);
   const torch::Tensor& raw = experience.advantage;
   const torch::Tensor advantage = (raw - raw.mean()) / (raw.std() + 1e-8);
   for (int epoch = 0; epoch < options_.epochs; ++epoch) {

@@ -23,7 +23,6 @@ struct PpoOptions {
   double gradient_clip = 0.5;  ///< of the gradient's norm
   int epochs = 4;
   long minibatch = 512;
-  std::vector<long> hidden{64, 64};  ///< of the policy and, apart, of the value
 
   /// Throws InputError, naming the field, when one is out of range.
   void check() const;

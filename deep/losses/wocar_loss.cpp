@@ -16,17 +16,14 @@ void WocarLossOptions::check() const {
   require(kappa >= 0 && kappa <= 1, "kappa", kappa, "0 to 1");
   require(worst_share >= 0 && worst_share <= 1, "worst_share", worst_share, "0 to 1");
   require(hinge_margin >= 0, "hinge_margin", hinge_margin, "at least 0");
+  require(!critic_floor || std::isfinite(*critic_floor), "critic_floor", critic_floor.value_or(0), "finite");
   const double critic = critic_eps.value_or(0);
   require(critic >= 0 && std::isfinite(critic), "critic_eps", critic, "finite and at least 0");
 }
 
 WocarLoss::WocarLoss(const WocarLossOptions& options, const QNetworkShape& shape, Stream& rng)
-    : options_(options),
-      critic_(std::make_shared<QNetwork>(shape, rng)),
-      critic_target_(std::make_shared<QNetwork>(shape, rng)) {
+    : options_(options), critic_(std::make_shared<QNetwork>(shape, rng)), critic_target_(frozen_copy(*critic_)) {
   options_.check();
-  for (torch::Tensor& parameter : critic_target_->parameters()) parameter.set_requires_grad(false);
-  copy_targets();
 }
 
 void WocarLoss::start_from(const QNetwork& q) {
@@ -65,7 +62,8 @@ torch::Tensor WocarLoss::critic_target_values(const Batch& batch, QNetwork& onli
   const torch::Tensor values = valuer->forward(batch.next_states);
   const torch::Tensor worst =
       values.masked_fill(torch::logical_not(reach), std::numeric_limits<double>::infinity()).amin(1);
-  return bootstrapped(batch, options_.td.discount, worst);
+  const torch::Tensor y = bootstrapped(batch, options_.td.discount, worst);
+  return options_.critic_floor ? y.clamp_min(*options_.critic_floor) : y;
 }
 
 torch::Tensor WocarLoss::robust_term(const Batch& batch, QNetwork& online, const torch::Tensor& values,

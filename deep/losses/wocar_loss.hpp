@@ -54,6 +54,10 @@ struct WocarLossOptions {
   std::optional<double> critic_eps{};
   /// Reachable actions are those of the acting values; else of Q alone, as released, though the agent acts by both.
   bool reach_of_acting_values = true;
+  /// No target of the critic is below it, in units of Q: a minimum over actions that were hardly tried, of what a
+  /// network makes of them, otherwise feeds on itself, and runs off below every return that there is. Unset: as
+  /// published.
+  std::optional<double> critic_floor{};
   /// The critic's target takes the actions reachable at the state before instead of at the next one: a slip of the
   /// released code, here for comparison.
   bool reach_at_state = false;

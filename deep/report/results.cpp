@@ -68,7 +68,7 @@ TargetVerdict verdict(const ResultCell& cell) {
   const Estimate e = estimate(cell.runs);
   const double sign = cell.target->sense == Target::Sense::at_least ? 1 : -1;
   const double above = sign * (e.mean - cell.target->value);  // how far on the right side
-  if (!e.across_seeds) return above >= 0 ? TargetVerdict::met_on_average : TargetVerdict::missed_nearly;
+  if (!e.across_seeds) return above >= 0 ? TargetVerdict::met_on_average : TargetVerdict::missed;
   const bool beyond_doubt = std::abs(above) >= e.across_seeds->half_width;
   if (above >= 0) return beyond_doubt ? TargetVerdict::met : TargetVerdict::met_on_average;
   return beyond_doubt ? TargetVerdict::missed : TargetVerdict::missed_nearly;

@@ -35,7 +35,7 @@ enum class TargetVerdict {
   met,             ///< by the whole interval
   met_on_average,  ///< by the mean; the interval reaches beyond the target, or there is none across seeds
   missed_nearly,   ///< missed by the mean, within the interval: still a miss
-  missed,          ///< by the whole interval
+  missed,          ///< by the whole interval, or by the mean where there is no interval across seeds
 };
 
 /// One defence under one attack.

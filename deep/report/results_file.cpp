@@ -53,9 +53,32 @@ const SeedRun* run_of(const ResultCell& cell, std::uint64_t training_seed) {
   return nullptr;
 }
 
+/// Makes the cell's measures means over its runs, of which the last `added` have these on average.
+void take_measures(ResultCell& to, const std::vector<std::pair<std::string, double>>& measures, std::size_t added) {
+  const double share = static_cast<double>(added) / static_cast<double>(to.runs.size());
+  for (const auto& measure : measures) {
+    const auto known =
+        std::find_if(to.measures.begin(), to.measures.end(), [&](const auto& m) { return m.first == measure.first; });
+    if (known == to.measures.end()) {
+      to.measures.push_back(measure);
+    } else {
+      known->second += (measure.second - known->second) * share;
+    }
+  }
+}
+
+/// Runs stand in the order of their seeds.
+void insert(ResultCell& to, const SeedRun& run) {
+  const auto place = std::upper_bound(to.runs.begin(), to.runs.end(), run, [](const SeedRun& a, const SeedRun& b) {
+    return a.training_seed < b.training_seed;
+  });
+  to.runs.insert(place, run);
+}
+
 /// Adds the runs of `from` that `to` does not have. Returns their wall time.
 double take_runs(ResultCell& to, const ResultCell& from, std::string_view where) {
   double seconds = 0;
+  std::size_t added = 0;
   for (const SeedRun& r : from.runs) {
     const SeedRun* known = run_of(to, r.training_seed);
     if (known && (known->returns != r.returns || known->evaluation_seed != r.evaluation_seed)) {
@@ -63,26 +86,17 @@ double take_runs(ResultCell& to, const ResultCell& from, std::string_view where)
                                    where, to.agent, to.attack, to.eps, r.training_seed));
     }
     if (known) continue;
-    to.runs.push_back(r);
+    insert(to, r);
+    ++added;
     seconds += r.wall_seconds;
   }
   if (to.note.empty()) to.note = from.note;
-  if (to.measures.empty()) to.measures = from.measures;
-  return seconds;
-}
-
-/// Makes the cell's measures means over its runs, the last of which has these.
-void take_measures(ResultCell& to, const std::vector<std::pair<std::string, double>>& of_run) {
-  const auto n = static_cast<double>(to.runs.size());
-  for (const auto& [name, value] : of_run) {
-    const auto known =
-        std::find_if(to.measures.begin(), to.measures.end(), [&](const auto& m) { return m.first == name; });
-    if (known == to.measures.end()) {
-      to.measures.emplace_back(name, value);
-    } else {
-      known->second += (value - known->second) / n;
-    }
+  if (added == from.runs.size()) {
+    take_measures(to, from.measures, added);
+  } else if (added > 0) {
+    to.measures.clear();  // of some of the runs alone they are not known
   }
+  return seconds;
 }
 
 }  // namespace
@@ -120,12 +134,9 @@ bool ResultFile::has(std::string_view block, const ResultCell& cell, std::uint64
 void ResultFile::put(std::string_view block, const ResultCell& cell, const SeedRun& run) {
   ResultTable next = table_;
   ResultCell& to = cell_of(block_of(next, block), cell);
-  const auto place = std::upper_bound(to.runs.begin(), to.runs.end(), run, [](const SeedRun& a, const SeedRun& b) {
-    return a.training_seed < b.training_seed;
-  });
-  to.runs.insert(place, run);
+  insert(to, run);
   if (!cell.note.empty()) to.note = cell.note;
-  take_measures(to, cell.measures);
+  take_measures(to, cell.measures, 1);
   next.wall_seconds += run.wall_seconds;
   write_results(path_, next);  // validates; the old table stays where it throws
   table_ = std::move(next);

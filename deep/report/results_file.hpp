@@ -57,7 +57,8 @@ class ResultFile {
 };
 
 /// Takes over into `table` every run of `other` that it does not have; made for tables whose seeds ran on several
-/// machines. Throws InputError when the configurations differ, or the same run has other returns.
+/// machines. Of a cell where they have some runs in common, and others not, measures are no longer known. Throws
+/// InputError when the configurations differ, or the same run has other returns.
 void merge(ResultTable& table, const ResultTable& other, std::string_view where);
 
 }  // namespace maximin::deep

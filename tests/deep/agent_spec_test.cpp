@@ -41,12 +41,15 @@ TEST(AgentSpec, EveryRecipeIsReadAsItIsWritten) {
       }
     }
   }
+  // In small is another training of the filter, and the specification says so.
+  EXPECT_FALSE(
+      same_training(recipe("bp-dqn-lstm", 0.1, 1, {false, 60'000}), recipe("bp-dqn-lstm", 0.1, 1, {true, 60'000})));
   // Every field is told: each that is changed shows in the JSON.
   const AgentSpec spec = recipe("bp-dqn", 0.1, 1);
   const Json flat = to_json(spec).flatten();
   EXPECT_EQ(flat.size(), 46U + spec.network.hidden.size() - 2);
   // A loss's own options and a particle filter's are told where they count.
-  EXPECT_EQ(to_json(recipe("wocar-dqn", 0.1, 1))["loss_options"].flatten().size(), 15U);
+  EXPECT_EQ(to_json(recipe("wocar-dqn", 0.1, 1))["loss_options"].flatten().size(), 16U);
   const Json released = to_json(recipe("bp-dqn-released", 0.1, 1));
   EXPECT_EQ(released["particle_filter"]["normalisation"], "batch");
   EXPECT_EQ(released["particle_filter_belief"]["correct"], false);
@@ -190,9 +193,11 @@ class TrainAgent : public ::testing::Test {
 };
 
 TEST_F(TrainAgent, StoppedAndResumedLeavesTheSameFiles) {
-  for (const char* kind : {"bp-dqn", "wocar-dqn"}) {
+  for (const char* kind : {"bp-dqn", "wocar-dqn", "bp-dqn-gru"}) {
     const fs::path whole = folder_ / "whole", cut = folder_ / "cut";
-    const AgentSpec spec = small(kind);
+    AgentSpec spec = small(kind);
+    spec.particle_filter.hidden = 8;
+    spec.particle_filter_training.updates = 20;
     EXPECT_EQ(train(spec, whole, 1 << 30), 0);
     EXPECT_GE(train(spec, cut, 2), 3);
     for (const std::string& name : {spec.name(), std::string("dqn-seed1")}) {
@@ -217,6 +222,23 @@ TEST_F(TrainAgent, StoppedAndResumedLeavesTheSameFiles) {
   other.training.seed = 2;
   train(other, folder_ / "whole", 1 << 30);
   EXPECT_NE(bytes_of(folder_ / "whole" / "dqn-seed1.csv"), bytes_of(folder_ / "whole" / "dqn-seed2.csv"));
+}
+
+TEST(Identity, TellsApartWhatActsDifferently) {
+  AgentSpec spec = recipe("bp-dqn", 0.3, 1);
+  const TrainedAgent agent = untrained(spec);
+  Acting acting = acting_of(spec);
+  const std::string usual = identity_of(agent, acting);
+  EXPECT_EQ(identity_of(untrained(spec), acting), usual);
+  acting.belief_states += 1;
+  EXPECT_NE(identity_of(agent, acting), usual);
+  spec.belief = "pf-lstm";
+  TrainedAgent with_filter = untrained(spec);
+  with_filter.particle_filter = untrained_filter(spec);
+  acting = acting_of(spec);
+  const std::string filtered = identity_of(with_filter, acting);
+  acting.filter_belief.hull_margin *= 2;
+  EXPECT_NE(identity_of(with_filter, acting), filtered);
 }
 
 TEST_F(TrainAgent, TakesWhatIsThereAndRefusesWhatIsNotWhatItWouldTrain) {

@@ -23,7 +23,6 @@
 #include <maximin/deep/attacks/simple_attacks.hpp>
 #include <maximin/deep/losses/td_loss.hpp>
 #include <maximin/deep/place_beliefs.hpp>
-#include <maximin/deep/runtime.hpp>
 #include <maximin/deep/set_beliefs.hpp>
 #include <maximin/deep/tensors.hpp>
 #include <maximin/deep/trainer.hpp>
@@ -181,7 +180,6 @@ void expect_reached(const LipschitzPlaces& m, Opponent opponent) {
 
 // Control: vanilla DQN, trained as long on the same model, finds the optimal values and fails by far.
 TEST(BpDqn, ReachesTheExactWorstCaseOfPessimisticQIterationAndDqnDoesNot) {
-  prepare_runtime();
   const LipschitzPlaces m(83, 0.15);
   expect_reached(m, Opponent::none);
   const Learned vanilla = train(m, Learner::dqn, Opponent::none);
@@ -191,7 +189,6 @@ TEST(BpDqn, ReachesTheExactWorstCaseOfPessimisticQIterationAndDqnDoesNot) {
 
 // Control: the target as the paper prints it, with the belief of s_t in the place of that of s_{t+1}.
 TEST(BpDqn, ReachesItUnderBestResponsesAndWithThePrintedTargetDoesNot) {
-  prepare_runtime();
   const LipschitzPlaces m(138, 0.15);
   expect_reached(m, Opponent::best_response);
   const Learned printed = train(m, Learner::bp_dqn_with_the_printed_target, Opponent::none);

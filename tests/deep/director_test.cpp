@@ -44,8 +44,7 @@ double probability_of_the_right_choice(double sign) {
   Stream rng(8);
   PpoOptions options;
   options.learning_rate = options.final_learning_rate = 3e-3;
-  options.hidden = {16};
-  auto network = std::make_shared<ActorCritic>(kinds, kinds, options.hidden, rng);
+  auto network = std::make_shared<ActorCritic>(kinds, kinds, std::vector<long>{16}, rng);
   Ppo ppo(network, options);
   torch::Tensor situation = torch::empty({rows}, torch::kLong);
   for (long i = 0; i < rows; ++i) situation[i] = rng.below(kinds);

@@ -19,7 +19,6 @@
 #include <maximin/deep/attacks/simple_attacks.hpp>
 #include <maximin/deep/lattice_agent.hpp>
 #include <maximin/deep/lattice_world.hpp>
-#include <maximin/deep/runtime.hpp>
 #include <maximin/tabular/belief_control.hpp>
 #include <maximin/tabular/policy_iteration.hpp>
 #include <maximin/theory/error.hpp>
@@ -139,7 +138,6 @@ struct Defence {
 class LatticeWorstCaseTest : public ::testing::Test {
  protected:
   LatticeWorstCaseTest() {
-    prepare_runtime();
     clean_ = policy_iteration(world_.mdp()).q;
     table_ = std::make_shared<SmoothTable>(clean_, world_);
     Stream rng(5);

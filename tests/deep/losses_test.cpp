@@ -197,7 +197,6 @@ Kept count_kept(Stream& rng, double eps, double believed) {
 }
 
 RC_GTEST_PROP(SaLoss, NoPenaltyOnlyWhereTheActionProvablyStays, (std::uint64_t seed)) {
-  torch::set_num_threads(1);
   Stream rng(seed);
   const double eps = rng.uniform(0, 0.5);
   const Kept kept = count_kept(rng, eps, eps);
@@ -330,6 +329,8 @@ TEST(WocarLoss, HandComputed) {
   expect_values(make()->target_values(batch, *q.online, *q.target), {2, 1, -1});
   options.reach_of_acting_values = true;  // and what is reachable at 0 is then action 0
   expect_values(critic_y(), {0.5, 1, -2.5});
+  options.critic_floor = -1;
+  expect_values(critic_y(), {0.5, 1, -1});
   const auto values = make()->acting(q.online);
   EXPECT_TRUE(torch::allclose(values->forward(row({0}).unsqueeze(1)), row({0.1 - 1.8, 0.2 - 4.5}).unsqueeze(0)));
 }

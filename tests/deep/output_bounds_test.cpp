@@ -81,7 +81,6 @@ OutputBounds faulty_intervals(const QNetwork& q, const StateBox& box, Fault faul
 
 // No tolerance anywhere: bounds hold for what the network computes in floats.
 RC_GTEST_PROP(OutputBounds, NoPointOfTheBoxIsOutside, (std::uint64_t seed)) {
-  torch::set_num_threads(1);
   torch::NoGradGuard no_grad;
   Stream rng(seed);
   const auto q = random_network(random_shape(rng), rng, rng.chance(0.8) ? torch::kFloat : torch::kDouble);

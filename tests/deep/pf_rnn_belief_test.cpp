@@ -63,7 +63,6 @@ struct Histories {
 };
 
 TEST(PfRnnBelief, LanesDoNotKnowOfEachOtherAndPeekForeseesUpdate) {
-  torch::set_num_threads(1);
   for (const PfCell cell : {PfCell::lstm, PfCell::gru}) {
     const PfRnnPtr module = make(1, cell);
     PfBeliefOptions other_seed;

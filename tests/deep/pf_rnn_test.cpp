@@ -355,7 +355,6 @@ TEST(PfRnn, AncestorsComeFromTheMixture) {
 }
 
 TEST(PfRnn, LearnsMoreThanWhatIsShown) {
-  torch::set_num_threads(1);
   PfRnnOptions shape;
   shape.eps = 0.5;
   shape.hidden = 32;

@@ -9,7 +9,6 @@
 #include <maximin/deep/attacks/place_attacks.hpp>
 #include <maximin/deep/belief_agent.hpp>
 #include <maximin/deep/place_beliefs.hpp>
-#include <maximin/deep/runtime.hpp>
 #include <maximin/deep/table_values.hpp>
 #include <maximin/tabular/tabular_agents.hpp>
 #include <maximin/tabular/tabular_attacks.hpp>
@@ -96,7 +95,6 @@ void expect_same_play(const LipschitzPlaces& m, const QTable<double>& q, SetBeli
 // An agent of the deep layer whose values are a table does what the exact layer's agent does with that table: in every
 // observation the same action, in every step of every episode the same, and returns that are equal as doubles.
 TEST(Places, ATableInTheDeepAgentPlaysAsInTheExactLayer) {
-  prepare_runtime();
   int kinds_differ = 0;
   for (const std::uint64_t model_seed : {8U, 16U, 83U, 138U}) {
     const LipschitzPlaces m(model_seed, 0.2);
@@ -122,7 +120,6 @@ TEST(Places, ATableInTheDeepAgentPlaysAsInTheExactLayer) {
 }
 
 TEST(Places, BeliefsAreThoseOfTheExactLayer) {
-  prepare_runtime();
   const LipschitzPlaces m(8, 0.2);
   const long k = m.balls.largest_ball();
   for (const SetBelief kind : {SetBelief::ball, SetBelief::exact}) {

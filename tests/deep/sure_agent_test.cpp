@@ -16,7 +16,6 @@
 #include <maximin/deep/attacks/pa_ad_attack.hpp>
 #include <maximin/deep/attacks/simple_attacks.hpp>
 #include <maximin/deep/evaluation.hpp>
-#include <maximin/deep/runtime.hpp>
 #include <maximin/theory/rollout_in_step.hpp>
 
 namespace maximin::deep {
@@ -63,7 +62,6 @@ std::vector<std::shared_ptr<GridAttack>> attacks(const ObservationBall& ball) {
 }
 
 TEST(SureAgent, KeepsItsPromiseInEveryEpisodeWhoeverAttacks) {
-  prepare_runtime();
   for (const auto& [eps, squares] : {std::pair(0.1, 2), std::pair(0.5, 2)}) {
     const ObservationBall ball(eps);
     const HullControl control(ball, squares);
@@ -136,7 +134,6 @@ TEST(SureAgent, SaysWhatItWouldDo) {
 }
 
 TEST(SureAgent, IsEvaluatedAndDrawnAsAnyAgent) {
-  prepare_runtime();
   const ObservationBall ball(0.5), smaller(0.1);
   const HullControl control(ball, 2), unprepared(smaller, 2);
   RandomAttack attack(ball);

@@ -112,7 +112,7 @@ TEST_F(TensorFiles, AreReadAsTheyWereWrittenAndDamageIsTold) {
   EXPECT_NE(reading("maximin-tensors 2\n{}\n").find("another version"), std::string::npos);
   EXPECT_NE(reading("PK\x03\x04").find("no file of this program"), std::string::npos);
   EXPECT_NE(refusal([&] { read_tensor_file(folder_, "agent"); }).find("a folder"), std::string::npos);
-  EXPECT_NE(refusal([&] { read_tensor_file(folder_ / "none", "agent"); }).find("cannot be read"), std::string::npos);
+  EXPECT_NE(refusal([&] { read_tensor_file(folder_ / "none", "agent"); }).find("No such file"), std::string::npos);
   EXPECT_TRUE(is_refusal(refusal([&] { write_tensor_file(folder_ / "none" / "file", example()); })));
 }
 

@@ -44,15 +44,7 @@ AgentSpec small(const std::function<void(AgentSpec&)>& change = {}) {
 /// A trainer with what it trains.
 struct Training {
   explicit Training(const AgentSpec& spec) : agent(untrained(spec)) {
-    TrainingParts parts;
-    parts.online = agent.q;
-    Acting acting = acting_of(spec);
-    acting.belief_states = spec.training_belief_states;
-    parts.belief = make_belief(acting, spec.eps, nullptr);
-    parts.aggregator = aggregator_named(spec.aggregator);
-    parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values_in_rewards(), *agent.q);
-    parts.loss = agent.loss;
-    trainer.emplace(spec.training, parts);
+    trainer.emplace(spec.training, training_parts(agent));
   }
 
   TrainedAgent agent;
@@ -280,6 +272,18 @@ Memory study(const TensorFile& file, double eps) {
     *share /= static_cast<double>(going_on);
   }
   return m;
+}
+
+TEST(Trainer, RefusesANetworkOfOtherActionsThanTheWorlds) {
+  const AgentSpec spec = recipe("dqn", 0.2, 1);
+  TrainedAgent agent = untrained(spec);
+  TrainingParts parts = training_parts(agent);
+  EXPECT_NO_THROW(Trainer(spec.training, parts));
+  QNetworkShape shape;
+  shape.actions = 4;
+  Stream rng(1);
+  parts.online = std::make_shared<QNetwork>(shape, rng);
+  EXPECT_THROW(Trainer(spec.training, parts), InputError);
 }
 
 TEST(Trainer, StoresWhatHappened) {

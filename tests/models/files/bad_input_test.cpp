@@ -25,11 +25,11 @@ struct BadInput {
 
 template <class Read>
 void expect_messages(const std::vector<BadInput>& cases, Read read) {
-  for (const auto& [text, message] : cases) {
-    const std::string said = testing::error_of([&] { read(text); });
-    EXPECT_EQ(said, message) << text;
-    EXPECT_EQ(said.find('\n'), std::string::npos) << text;
-    EXPECT_NE(said.find("expected"), std::string::npos) << text;
+  for (const BadInput& bad : cases) {
+    const std::string said = testing::error_of([&] { read(bad.text); });
+    EXPECT_EQ(said, bad.message) << bad.text;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << bad.text;
+    EXPECT_NE(said.find("expected"), std::string::npos) << bad.text;
   }
 }
 
