@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -257,6 +258,109 @@ TEST(Attacks, AreAsStrongInOneStepAsTheyClaim) {
       EXPECT_LT(pgd, by_chance);
     }
   }
+}
+
+/// What a gradient attack makes small, at these observations of the truth.
+std::vector<double> objectives(AttackObjective objective, QNetwork& q, Point truth, const std::vector<Point>& shown) {
+  torch::NoGradGuard no_grad;
+  const torch::Tensor at = q.forward(to_tensor(shown)), here = q.forward(to_tensor(std::vector<Point>{truth}));
+  torch::Tensor value = here.expand_as(at).gather(1, at.argmax(1, true));
+  if (objective == AttackObjective::min_best) value = torch::softmax(at, 1).narrow(1, here.argmax().item<long>(), 1);
+  if (objective == AttackObjective::cross_entropy) {
+    value = torch::log_softmax(at, 1).narrow(1, here.argmax().item<long>(), 1);
+  }
+  std::vector<double> all;
+  for (long i = 0; i < value.size(0); ++i) all.push_back(value[i][0].item<double>());
+  return all;
+}
+
+/// How far a gradient attack comes from what chance shows (0) to the least that a fine grid finds (1).
+double way_to_the_least(GradientAttack&& attack, AttackObjective objective, QNetwork& q, const ObservationBall& ball) {
+  const std::vector<Point> truths = places_in_the_open(60);
+  BeliefAgent unused(small_network(1), std::make_shared<ObservedState>(), MeanAggregator{});
+  RandomAttack random(ball);
+  const std::vector<Point> by_attack = shown_by(attack, unused, truths, 3),
+                           by_chance = shown_by(random, unused, truths, 8);
+  double reached = 0, chance = 0, least = 0;
+  for (std::size_t k = 0; k < truths.size(); ++k) {
+    reached += objectives(objective, q, truths[k], {by_attack[k]})[0];
+    const std::vector<double> all = objectives(objective, q, truths[k], whole_grid(ball, truths[k], 41));
+    least += *std::min_element(all.begin(), all.end());
+  }
+  for (std::size_t k = 0; k < by_chance.size(); ++k) {
+    chance += objectives(objective, q, truths[k % truths.size()], {by_chance[k]})[0];
+  }
+  chance /= static_cast<double>(by_chance.size()) / static_cast<double>(truths.size());
+  return (chance - reached) / (chance - least);
+}
+
+TEST(Attacks, GradientsMakeTheirOwnObjectivesSmall) {
+  const ObservationBall ball(0.4);
+  const QNetworkPtr q = small_network(11);
+  for (const char* name : {"pgd", "min-best", "pgd-restarts", "pgd-released"}) {
+    SCOPED_TRACE(name);
+    GradientAttackOptions options = gradient_attack_named(name);
+    EXPECT_EQ(options.starts, std::string(name) == "pgd-restarts" ? 10 : 1);
+    EXPECT_EQ(options.released_start, std::string(name) == "pgd-released");
+    EXPECT_EQ(options.keep_best, !options.released_start);
+    // From a wrong corner, and showing where it ends, it has nothing to boast of.
+    options.released_start = false;
+    options.keep_best = true;
+    const double way = way_to_the_least(GradientAttack(q, ball, options), options.objective, *q, ball);
+    EXPECT_GT(way, options.starts > 1 ? 0.8 : 0.45);
+    EXPECT_LT(way, 1.05);
+    // The same on the gradients of another network comes less far.
+    const QNetworkPtr other = small_network(12);
+    EXPECT_LT(way_to_the_least(GradientAttack(other, ball, options), options.objective, *q, ball), way - 0.1);
+  }
+  EXPECT_EQ(gradient_attack_named("pgd").objective, AttackObjective::value);
+  EXPECT_EQ(gradient_attack_named("min-best").objective, AttackObjective::min_best);
+  EXPECT_EQ(gradient_attack_named("pgd-released").objective, AttackObjective::cross_entropy);
+  EXPECT_THROW(gradient_attack_named("pgd-"), InputError);
+  // The released start: the corner of the ball that is nearest to the lower left corner of the world.
+  GradientAttackOptions released = gradient_attack_named("pgd-released");
+  released.steps = 0;
+  GradientAttack start(q, ball, released);
+  BeliefAgent unused(q, std::make_shared<ObservedState>(), MeanAggregator{});
+  EXPECT_EQ(shown_by(start, unused, {{4.5, 6.5}}, 3)[0], grid_place(ball, {4.5, 6.5}, 2, 0, 0));
+}
+
+TEST(Attacks, ASteadyBestResponseShowsTheNearestToItsLastErrorAmongEquals) {
+  const ObservationBall ball(0.4);
+  const QNetworkPtr q = small_network(11);
+  const std::vector<Point> truths = places_in_the_open(40);
+  BestResponseOptions options{5, 0, true};
+  BestResponseAttack steady(q, ball, options);
+  options.steady = false;
+  BestResponseAttack restless(q, ball, options);
+  BeliefAgent agent(q, std::make_shared<ObservedState>(), MeanAggregator{});
+  const std::vector<Point> by_steady = shown_by(steady, agent, truths, 3),
+                           by_restless = shown_by(restless, agent, truths, 3);
+  const auto error_of = [&](const std::vector<Point>& shown, std::size_t k) {
+    const Point s = truths[k % truths.size()];
+    return Point{shown[k].x - s.x, shown[k].y - s.y};
+  };
+  const auto far = [](Point a, Point b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); };
+  const auto out_of_place = [&](const std::vector<Point>& shown) {
+    int count = 0;
+    for (std::size_t k = truths.size(); k < shown.size(); ++k) {
+      const Point truth = truths[k % truths.size()], last = error_of(shown, k - truths.size());
+      const Point carried = ball.project(truth, {truth.x + last.x, truth.y + last.y});
+      std::vector<Point> candidates = whole_grid(ball, truth, 5);
+      candidates.push_back(carried);
+      candidates.push_back(shown[k]);
+      const std::vector<double> values = objectives(AttackObjective::value, *q, truth, candidates);
+      const double least = *std::min_element(values.begin(), values.end());
+      bool nearest = values.back() == least;
+      for (std::size_t c = 0; c < candidates.size(); ++c) {
+        nearest = nearest && (values[c] > least || far(candidates[c], carried) >= far(shown[k], carried));
+      }
+      count += !nearest;
+    }
+    return count;
+  };
+  EXPECT_EQ(out_of_place(by_steady), 0);
+  EXPECT_GT(out_of_place(by_restless), static_cast<int>(truths.size()) / 2);
 }
 
 TEST(Attacks, TargetedSearchProvokesWhatCanBeProvoked) {

@@ -2,6 +2,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include <maximin/models/arbitrary_mdp.hpp>
@@ -142,6 +143,25 @@ TEST(RolloutInStep, TheComparisonFindsDifferences) {
   const InStep play(gridworld_lattice());
   EXPECT_GT(play.differences_with(7, 60, /*wrong_streams=*/true), 100);
   EXPECT_GT(play.differences_of_a_grudge(7), 0) << "what is remembered from another episode shows";
+}
+
+TEST(RolloutInStep, BeginsWithWhicheverEpisode) {
+  const auto model = gridworld_lattice();
+  const TabularEnvironment<double> env(model.mdp);
+  EachLane<Dithering> agents(Dithering(8));
+  EachLaneAttack<NoAttack> attacks{NoAttack{}};
+  const auto paths = [&](const EpisodesInStep& options) {
+    std::map<long, std::vector<State>> way;
+    const auto played = rollout_in_step(env, agents, attacks, options,
+                                        [&](long number, const auto& record) { way[number].push_back(record.next); });
+    EXPECT_EQ(played.size(), static_cast<std::size_t>(options.episodes));
+    return way;
+  };
+  auto all = paths({.horizon = 30, .episodes = 12});
+  const auto last = paths({.horizon = 30, .episodes = 5, .lanes = 2, .first = 7});
+  EXPECT_NE(all[0], all[7]);
+  std::erase_if(all, [](const auto& way) { return way.first < 7; });
+  EXPECT_EQ(last, all);
 }
 
 TEST(RolloutInStep, PlaysNothingInNoTimeAndRefusesNoLanes) {
