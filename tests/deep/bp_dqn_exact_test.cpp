@@ -7,10 +7,10 @@
 // point is another one, and nothing forces its policy to be as good. Both policies are however read off their tables
 // alike, as the maximin over the ball, and a policy is worth what it is worth whatever table it came from. So the test
 // compares exact worst-case values of policies, not tables, and checks the table against the fixed point of BP-DQN's
-// own target. Of 200 such models of radius 0.15 pessimistic Q-iteration settles on 155; on 137 of those the policy of
-// BP-DQN's exact fixed point, the truth being shown, is at most 2 percent of max|R|/(1-gamma) worse on average over
-// states, on 18 it is worse by up to 12 percent, and learning that target well does not mend it. The models below are
-// of the 137, ones where pessimism matters; the last test keeps one of the 18 in sight.
+// own target. Among models on which pessimistic Q-iteration settles there are those where the policy of BP-DQN's exact
+// fixed point, the truth being shown, is as good within the tolerance below, and those where it is worse and learning
+// that target well does not mend it. The models below are of the first kind, ones where pessimism matters; the last
+// test keeps one of the second in sight.
 #include <algorithm>
 #include <limits>
 #include <memory>
