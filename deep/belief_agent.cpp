@@ -35,7 +35,7 @@ void BeliefAgent::forget(Lane lane) {
 
 torch::Tensor BeliefAgent::values(const BeliefStates& belief) const {
   torch::InferenceMode inference;
-  const torch::Device device = q_->parameters().front().device();
+  const torch::Device device = device_of(*q_);
   const torch::Tensor states = belief.states.to(device);
   const torch::Tensor q = q_->forward(states.flatten(0, 1)).view({states.size(0), states.size(1), -1});
   return aggregate(aggregator_, q, belief.weights.to(device, q.scalar_type()));

@@ -7,7 +7,6 @@
 
 #include <torch/torch.h>
 
-#include <maximin/deep/tensors.hpp>
 #include <maximin/theory/policies.hpp>
 
 namespace maximin::deep {
@@ -16,8 +15,7 @@ QTable<double> values_on_lattice(ActionValueModule& q, const LatticeWorld& world
   torch::InferenceMode inference;
   std::vector<Point> places;
   for (State s = 0; s < world.mdp().states(); ++s) places.push_back(world.place(s));
-  const torch::Device device = q.parameters().front().device();
-  const torch::Tensor values = q.forward(to_tensor(places).to(device)).to(torch::kCPU, torch::kDouble).contiguous();
+  const torch::Tensor values = values_at(q, places).to(torch::kDouble);
   QTable<double> table(values.size(0), values.size(1));
   const auto entry = values.accessor<double, 2>();
   for (long s = 0; s < table.rows(); ++s) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include <maximin/deep/tensors.hpp>
+
 namespace maximin::deep {
 
 torch::nn::Linear linear_layer(long inputs, long outputs, Stream& rng) {
@@ -59,7 +61,7 @@ void QNetwork::copy_from(const QNetwork& other) {
 QNetworkPtr frozen_copy(const QNetwork& q) {
   Stream unused(0);
   auto copy = std::make_shared<QNetwork>(q.shape(), unused);
-  copy->to(q.parameters().front().device());
+  copy->to(device_of(q));
   copy->copy_from(q);
   for (torch::Tensor& parameter : copy->parameters()) parameter.set_requires_grad(false);
   return copy;
@@ -69,6 +71,15 @@ long QNetwork::parameter_count() const {
   long n = 0;
   for (const auto& p : parameters()) n += p.numel();
   return n;
+}
+
+torch::Device device_of(const torch::nn::Module& module) {
+  return module.parameters().front().device();
+}
+
+torch::Tensor values_at(ActionValueModule& q, std::span<const Point> places) {
+  torch::InferenceMode inference;
+  return q.forward(to_tensor(places).to(device_of(q))).to(torch::kCPU).contiguous();
 }
 
 }  // namespace maximin::deep

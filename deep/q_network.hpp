@@ -76,6 +76,12 @@ using QNetworkPtr = std::shared_ptr<QNetwork>;
 /// Another network of the same shape and weights, on the same device, which needs no gradients.
 QNetworkPtr frozen_copy(const QNetwork& q);
 
+/// Where the module's numbers are.
+torch::Device device_of(const torch::nn::Module& module);
+
+/// Q(s, .) at these places, [n, actions], on the CPU, without gradient.
+torch::Tensor values_at(ActionValueModule& q, std::span<const Point> places);
+
 /// A linear layer whose weights and biases are drawn uniformly from +-1/sqrt(inputs): the same stream, the same layer
 /// with every version of LibTorch.
 torch::nn::Linear linear_layer(long inputs, long outputs, Stream& rng);

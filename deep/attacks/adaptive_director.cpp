@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <maximin/deep/attacks/ball_places.hpp>
-#include <maximin/deep/tensors.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -66,8 +65,7 @@ std::vector<Action> AdaptiveDirector::provoked(std::span<const Lane> lanes, std:
 torch::Tensor AdaptiveDirector::harm(std::span<const Point> truths, const std::vector<Action>& provoked) const {
   const auto n = static_cast<long>(truths.size());
   if (!judge_) return torch::zeros({n, choices()});
-  const torch::Device device = judge_->parameters().front().device();
-  const torch::Tensor q = judge_->forward(to_tensor(truths).to(device)).to(torch::kCPU);
+  const torch::Tensor q = values_at(*judge_, truths);
   const torch::Tensor best = q.amax(1, true), worst = q.amin(1, true);
   const torch::Tensor there = q.gather(1, torch::tensor(provoked, torch::kLong).view({n, choices()}));
   return (best - there) / (best - worst).clamp_min(1e-6);

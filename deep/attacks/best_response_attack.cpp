@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <maximin/deep/attacks/ball_places.hpp>
-#include <maximin/deep/tensors.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -50,9 +49,7 @@ void BestResponseAttack::perturb(std::span<const Lane> lanes, std::span<const Po
   std::vector<Action> answers(points.size());
   agent.would_do(asked, points, answers);
 
-  torch::InferenceMode inference;
-  const torch::Device device = judge_->parameters().front().device();
-  const torch::Tensor q = judge_->forward(to_tensor(truths).to(device)).to(torch::kCPU);
+  const torch::Tensor q = values_at(*judge_, truths).to(torch::kFloat);
   const auto value = q.accessor<float, 2>();
   const std::size_t each = points.size() / lanes.size();
   for (std::size_t k = 0; k < lanes.size(); ++k) {

@@ -72,7 +72,7 @@ torch::Tensor GradientAttack::starts(std::span<const Lane> lanes, std::span<cons
 
 void GradientAttack::perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent&,
                              std::span<Stream> streams, std::span<Point> shown) {
-  const torch::Device device = q_->parameters().front().device();
+  const torch::Device device = device_of(*q_);
   const BallBounds bounds(truths, ball_, device);
   torch::Tensor q_truth, best;
   {

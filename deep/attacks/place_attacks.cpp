@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <maximin/deep/tensors.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -39,10 +38,7 @@ PlaceBestResponse::PlaceBestResponse(std::shared_ptr<ActionValueModule> judge, c
 
 void PlaceBestResponse::perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                                 std::span<Stream>, std::span<Point> shown) {
-  torch::InferenceMode inference;
-  const torch::Device device = judge_->parameters().front().device();
-  const torch::Tensor values =
-      judge_->forward(to_tensor(truths).to(device)).to(torch::kCPU, torch::kDouble).contiguous();
+  const torch::Tensor values = values_at(*judge_, truths).to(torch::kDouble);
   std::vector<Lane> asked;
   std::vector<Point> candidates;
   for (std::size_t k = 0; k < lanes.size(); ++k) {

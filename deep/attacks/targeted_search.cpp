@@ -43,7 +43,7 @@ torch::Tensor TargetedSearch::best_of_grid(std::span<const Point> truths, const 
 
 void TargetedSearch::find(std::span<const Lane> lanes, std::span<const Point> truths, std::span<const int> targets,
                           std::span<Stream> streams, std::span<Point> found) const {
-  const torch::Device device = q_->parameters().front().device();
+  const torch::Device device = device_of(*q_);
   const BallBounds bounds(truths, ball_, device);
   const torch::Tensor target =
       torch::tensor(std::vector<int>(targets.begin(), targets.end()), torch::kLong).unsqueeze(1).to(device);

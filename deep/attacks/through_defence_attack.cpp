@@ -94,8 +94,7 @@ void ThroughDefenceAttack::perturb(std::span<const Lane> lanes, std::span<const 
       row_starts.push_back(ball_.draw(truths[k], streams[static_cast<std::size_t>(lanes[k])]));
     }
   }
-  const torch::Device device = judge_->parameters().front().device();
-  const torch::Tensor judged = judge_->forward(to_tensor(row_truths).to(device)).to(torch::kCPU);
+  const torch::Tensor judged = values_at(*judge_, row_truths);
   torch::Tensor at = to_tensor(row_starts);
   Descents descents(*defence, ball_, std::move(row_lanes), std::move(row_truths), judged, options_.unit);
   descents.look(at);

@@ -8,6 +8,7 @@
 #include <maximin/models/rationalise.hpp>
 #include <maximin/proofs_check/certificate/belief_positions.hpp>
 #include <maximin/proofs_check/certificate/exact_examination.hpp>
+#include <maximin/proofs_check/certificate/exact_geometry.hpp>
 #include <maximin/tabular/belief_game.hpp>
 #include <maximin/tabular/optimal_attack.hpp>
 #include <maximin/tabular/policy_iteration.hpp>
@@ -72,7 +73,7 @@ Verdict verdict_on_settling(const Examination& found) {
 /// are only bounded from below decide nothing.
 Verdict verdict_on_the_sharper_belief(const Certificate& c) {
   if (!c.belief_game || !c.belief_game->exact) return Verdict::undetermined;
-  const Values<Rational> on_belief = start_values(*c.belief_game, make_perturbation(c.model));
+  const Values<Rational> on_belief = start_values(*c.belief_game, ExactGeometry(c.model).balls());
   for (State s = 0; s < on_belief.size(); ++s) {
     if (c.test_time_robust[s] > on_belief[s]) return Verdict::violated;
   }

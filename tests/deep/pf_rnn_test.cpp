@@ -23,7 +23,15 @@ namespace {
 using Vector = std::vector<double>;
 
 /// What to do wrong in the step worked out by hand: each must be noticed.
-enum class Fault { none, gates_swapped, no_spread, weights_not_divided, mean_unweighted, no_normalisation };
+enum class Fault {
+  none,
+  gates_swapped,
+  no_spread,
+  weights_not_divided,
+  mean_unweighted,
+  no_normalisation,
+  other_order
+};
 
 double sigmoid(double v) {
   return 1 / (1 + std::exp(-v));
@@ -34,6 +42,7 @@ class ByHand {
  public:
   ByHand(const PfRnn& module, Fault fault) : options_(module.options()), fault_(fault) {
     for (const auto& item : module.named_parameters()) parameters_[item.key()] = item.value().to(torch::kDouble);
+    for (const auto& item : module.named_buffers()) parameters_[item.key()] = item.value().to(torch::kDouble);
   }
 
   struct Particle {
@@ -42,7 +51,7 @@ class ByHand {
     std::array<double, 2> place{};
   };
   struct Result {
-    std::vector<Particle> moved, resampled;
+    std::vector<Particle> read, resampled;
     std::array<double, 2> mean{};
   };
 
@@ -55,21 +64,24 @@ class ByHand {
     double total = 0;
     for (std::size_t k = 0; k < particles.size(); ++k) {
       Particle& p = particles[k];
-      options_.cell == PfCell::lstm ? lstm(p, input, normal[k]) : gru(p, input, normal[k]);
+      options_.cell == PfCell::lstm ? lstm(p, input, normal[k], k) : gru(p, input, normal[k], k);
       p.weight *= std::exp(evidence(p, input));
       total += p.weight;
-      const Vector out = affine("read", p.h);
-      p.place = {shown.x + options_.eps * out[0], shown.y + options_.eps * out[1]};
     }
+    for (Particle& p : particles) p.weight /= total;
     Result result;
-    for (Particle& p : particles) {
-      p.weight /= total;
+    result.resampled = resample(particles, uniform);
+    const bool before = options_.read_before_resampling != (fault_ == Fault::other_order);
+    result.read = before ? particles : result.resampled;
+    for (Particle& p : result.read) {
+      const Vector out = affine("read", p.h);
+      const bool residual = options_.read_out == PfReadOut::residual;
+      p.place = residual ? std::array<double, 2>{shown.x + options_.eps * out[0], shown.y + options_.eps * out[1]}
+                         : std::array<double, 2>{5 + 5 * out[0], 5 + 5 * out[1]};
       const double weight = fault_ == Fault::mean_unweighted ? 1.0 / static_cast<double>(particles.size()) : p.weight;
       result.mean[0] += weight * p.place[0];
       result.mean[1] += weight * p.place[1];
     }
-    result.moved = particles;
-    result.resampled = resample(particles, uniform);
     return result;
   }
 
@@ -94,7 +106,11 @@ class ByHand {
     return sum;
   }
 
-  Vector candidate(Vector mean, const Vector& spread, const Vector& normal) const {
+  /// Of particle k. Normalised over the batch, it has statistics of its own: outside training running ones.
+  Vector candidate(Vector mean, const Vector& spread, const Vector& normal, std::size_t k) const {
+    const auto of_batch = [&](const char* name) {
+      return parameters_.at(std::string("candidate.batch.") + name)[static_cast<long>(k)].item<double>();
+    };
     const auto n = static_cast<double>(mean.size());
     double centre = 0, variance = 0;
     for (std::size_t i = 0; i < mean.size(); ++i) {
@@ -102,14 +118,21 @@ class ByHand {
       centre += mean[i] / n;
     }
     for (const double v : mean) variance += (v - centre) * (v - centre) / n;
+    double gain = 1, shift = 0;
+    if (options_.normalisation == PfNormalisation::batch) {
+      centre = of_batch("running_mean");
+      variance = of_batch("running_var");
+      gain = of_batch("weight");
+      shift = of_batch("bias");
+    }
     for (double& v : mean) {
-      if (fault_ != Fault::no_normalisation) v = (v - centre) / std::sqrt(variance + 1e-5);
+      if (fault_ != Fault::no_normalisation) v = gain * (v - centre) / std::sqrt(variance + 1e-5) + shift;
       v = v > 0 ? v : 0.01 * v;
     }
     return mean;
   }
 
-  void lstm(Particle& p, const Vector& input, const Vector& normal) const {
+  void lstm(Particle& p, const Vector& input, const Vector& normal, std::size_t k) const {
     const std::size_t h = p.h.size();
     const Vector a = affine("from_hidden", p.h), b = affine("from_input", input);
     const auto sum = [&](std::size_t gate, std::size_t i) { return a[gate * h + i] + b[gate * h + i]; };
@@ -118,7 +141,7 @@ class ByHand {
       mean.push_back(sum(3, i));
       spread.push_back(sum(4, i));
     }
-    const Vector g = candidate(mean, spread, normal);
+    const Vector g = candidate(mean, spread, normal, k);
     const std::size_t forget = fault_ == Fault::gates_swapped ? 1 : 0;
     for (std::size_t i = 0; i < h; ++i) {
       p.c[i] = sigmoid(sum(forget, i)) * p.c[i] + sigmoid(sum(1 - forget, i)) * g[i];
@@ -126,7 +149,7 @@ class ByHand {
     }
   }
 
-  void gru(Particle& p, const Vector& input, const Vector& normal) const {
+  void gru(Particle& p, const Vector& input, const Vector& normal, std::size_t k) const {
     const std::size_t h = p.h.size();
     const Vector a = affine("from_hidden", p.h), b = affine("from_input", input);
     const std::size_t update = fault_ == Fault::gates_swapped ? 1 : 0;
@@ -140,7 +163,7 @@ class ByHand {
       mean.push_back(from_reset[i] + b[2 * h + i]);
       spread.push_back(from_reset[h + i] + b[3 * h + i]);
     }
-    const Vector n = candidate(mean, spread, normal);
+    const Vector n = candidate(mean, spread, normal, k);
     for (std::size_t i = 0; i < h; ++i) p.h[i] = (1 - z[i]) * n[i] + z[i] * p.h[i];
   }
 
@@ -219,9 +242,9 @@ double difference(PfRnn& module, Fault fault) {
     const auto expected = by_hand.step(particles, row(features), history[t].shown, normal, row(noise.uniform));
     for (std::size_t i = 0; i < k; ++i) {
       const auto n = static_cast<long>(i);
-      compare(step.weights[0][n], expected.moved[i].weight);
+      compare(step.weights[0][n], expected.read[i].weight);
       for (int axis = 0; axis < 2; ++axis) {
-        compare(step.places[0][n][axis], expected.moved[i].place[static_cast<std::size_t>(axis)]);
+        compare(step.places[0][n][axis], expected.read[i].place[static_cast<std::size_t>(axis)]);
         compare(step.mean[0][axis], expected.mean[static_cast<std::size_t>(axis)]);
       }
       compare(step.state.log_weights[0][n].exp(), expected.resampled[i].weight);
@@ -238,23 +261,34 @@ double difference(PfRnn& module, Fault fault) {
 
 TEST(PfRnn, TwoStepsAreWhatTheEquationsSay) {
   for (const PfCell cell : {PfCell::lstm, PfCell::gru}) {
-    for (const PfWeighing weighing : {PfWeighing::bilinear, PfWeighing::linear}) {
-      PfRnnOptions options = tiny(cell);
-      options.weighing = weighing;
-      if (weighing == PfWeighing::linear) {
-        options.resampling = PfResampling::multinomial;
-      }
+    for (const bool as_published : {false, true}) {
+      PfRnnOptions options = as_published ? PfRnnOptions::published(0.5) : tiny(cell);
+      options.cell = cell;
+      options.particles = 3;
+      options.hidden = 4;
+      options.embedding = 5;
       const PfRnnPtr module = make(options);
+      module->eval();
       {
         // Weights that differ, so that each part of a step can be seen.
         const torch::NoGradGuard no_grad;
         for (auto& item : module->named_parameters()) {
           if (item.key().starts_with("weigh.")) item.value().mul_(10);
         }
+        double number = 0.4;
+        for (const char* name : {"candidate.batch.running_mean", "candidate.batch.running_var",
+                                 "candidate.batch.weight", "candidate.batch.bias"}) {
+          for (auto& item : module->named_buffers()) {
+            if (item.key() == name) item.value().add_(torch::arange(3) * (number += 0.1));
+          }
+          for (auto& item : module->named_parameters()) {
+            if (item.key() == name) item.value().add_(torch::arange(3) * (number += 0.1));
+          }
+        }
       }
       EXPECT_LT(difference(*module, Fault::none), 1e-5);
       for (const Fault fault : {Fault::gates_swapped, Fault::no_spread, Fault::weights_not_divided,
-                                Fault::mean_unweighted, Fault::no_normalisation}) {
+                                Fault::mean_unweighted, Fault::no_normalisation, Fault::other_order}) {
         EXPECT_GT(difference(*module, fault), 1e-4) << "fault " << static_cast<int>(fault) << " goes unnoticed";
       }
     }

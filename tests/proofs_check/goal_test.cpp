@@ -23,6 +23,20 @@ TEST(Goal, IsProvedExactlyEitherWay) {
   EXPECT_EQ(proved_on("sharper-belief", "one-sided"), Verdict::holds) << "violated: by the search, in the CLI test";
 }
 
+TEST(Goal, IsProvedUnderTheEuclideanNormToo) {
+  Model<double> model = builtin_model("one-sided");
+  model.geometry.kind = Geometry<double>::Kind::points;
+  model.geometry.points = Metric<double>::Points::Zero(model.mdp.states(), 2);
+  for (State s = 0; s < model.mdp.states(); ++s) model.geometry.points(s, 0) = s;
+  model.geometry.norm = Norm::l2;
+  model.geometry.eps = 1;
+  for (const Goal& goal : goals()) {
+    EXPECT_NE(proved(goal, model, {}), Verdict::violated) << goal.name;
+    EXPECT_NO_THROW(proved(goal, model, {})) << goal.name;
+  }
+  EXPECT_EQ(proved(*find_goal("sharper-belief"), model, {}), Verdict::holds);
+}
+
 TEST(Goal, IsUndeterminedWhereABudgetRunsOut) {
   ExaminationOptions options;
   options.max_iterations = 1;
