@@ -154,8 +154,8 @@ void report_agent(const LatticeWorld& world, const std::filesystem::path& file, 
              acting.belief.starts_with("pf-") ? " (here: exact)" : "", acting.aggregator,
              acting.random_actions > 0 ? ", its random actions left out" : "");
   const std::shared_ptr<ActionValueModule> in_rewards = trained.values_in_rewards();
-  const AttackTarget target{in_rewards, in_rewards, "", trained.spec.training.reward_scale,
-                            [&] { return make_agent(trained, acting); }};
+  const AttackTarget target{in_rewards, in_rewards, "", [&] { return make_agent(trained, acting); },
+                            trained.spec.training.reward_scale};
   for (const NamedAttack& named : named_attacks()) {
     if (named.learned ? settings.learned == "no" : settings.without_attacks && named.name != "none") continue;
     if (named.name == "through-defence") continue;  // differentiates what the agent goes by, off the lattice

@@ -211,6 +211,7 @@ void visit_fields(AgentSpec& o, Visitor& visit) {
   visit("target_order", o.target_order);
   visit("discount", o.discount);
   visit("train_attack", o.train_attack);
+  visit.rare("start_anywhere", o.start_anywhere);
   visit("start_from", o.start_from);
   visit("random_actions", o.random_actions);
   visit("training", o.training);

@@ -47,6 +47,7 @@ struct AgentSpec {
   TargetOrder target_order = TargetOrder::max_of_aggregate;
   double discount = 0.99;
   std::string train_attack = "none";  ///< none, random, pgd, pgd-released, min-best, mixed
+  bool start_anywhere = false;        ///< episodes begin in gold and bomb too, as in the released code; written if so
   std::string start_from;             ///< kind of agent whose weights the training begins with; empty: none
   double random_actions = 0;          ///< share of random actions after training
   TrainOptions training;
@@ -58,6 +59,13 @@ struct AgentSpec {
   /// Whether eps has a part in it.
   bool knows_eps() const { return belief != "observed" || loss != "td" || train_attack != "none"; }
 };
+
+/// The world that it is trained in, and evaluated.
+inline GridworldOptions world_of(const AgentSpec& spec) {
+  GridworldOptions world;
+  world.start_anywhere = spec.start_anywhere;
+  return world;
+}
 
 /// The options of a loss, one of the specification's, with what follows from its other fields.
 template <class Options>

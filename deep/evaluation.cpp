@@ -60,9 +60,9 @@ class WatchedAttack {
 }  // namespace
 
 AgentEvaluation evaluate_agent(GridAgent& agent, GridAttack& attack, const ObservationBall& ball, long episodes,
-                               std::uint64_t seed) {
+                               std::uint64_t seed, const GridworldOptions& world_options) {
   AgentEvaluation out;
-  ContinuousGridworld world;
+  ContinuousGridworld world(world_options);
   Watched watched(agent);
   WatchedAttack bounded(attack, ball);
   long held = 0;
@@ -90,12 +90,12 @@ AgentEvaluation evaluate_agent(GridAgent& agent, GridAttack& attack, const Obser
 }
 
 EpisodeTrace trace_episode(GridAgent& agent, GridAttack& attack, const ObservationBall& ball, std::uint64_t seed,
-                           long number) {
+                           long number, const GridworldOptions& world_options) {
   EpisodeTrace trace;
   trace.eps = ball.eps();
   trace.evaluation_seed = seed;
   trace.episode = number;
-  ContinuousGridworld world;
+  ContinuousGridworld world(world_options);
   Watched watched(agent);
   WatchedAttack bounded(attack, ball);
   TraceBelief belief;

@@ -24,10 +24,10 @@ struct AgentEvaluation {
 /// Plays the paper's episodes, of 100 steps at most, undiscounted. Throws std::logic_error when the attack leaves the
 /// ball.
 AgentEvaluation evaluate_agent(GridAgent& agent, GridAttack& attack, const ObservationBall& ball, long episodes,
-                               std::uint64_t seed);
+                               std::uint64_t seed, const GridworldOptions& world = {});
 
 /// Episode `number` of the same, for pictures. The trace's agent, attack and training seed are left to the caller.
 EpisodeTrace trace_episode(GridAgent& agent, GridAttack& attack, const ObservationBall& ball, std::uint64_t seed,
-                           long number);
+                           long number, const GridworldOptions& world = {});
 
 }  // namespace maximin::deep

@@ -19,12 +19,14 @@
 ///
 ///     template <class Visitor> void visit_fields(Options& o, Visitor& visit) { visit("name", o.name); ... }
 ///
-/// in namespace maximin::deep; what an enumeration's values are called by `words_of(Enumeration)`, an array of texts.
+/// in namespace maximin::deep (`visit.rare` for a flag that is written only where it is set); what an enumeration's
+/// values are called by `words_of(Enumeration)`, an array of texts.
 namespace maximin::deep {
 
 struct AnyVisitor {
   template <class T>
   void operator()(const char*, T&);
+  void rare(const char*, bool&);
 };
 
 template <class T>
@@ -42,6 +44,10 @@ class FieldWriter {
   template <class T>
   void operator()(const char* name, T& field) {
     json_[name] = json_of(field);
+  }
+
+  void rare(const char* name, bool& flag) {
+    if (flag) (*this)(name, flag);
   }
 
   /// All fields of these options, in order.
@@ -89,6 +95,7 @@ class FieldReader {
     const auto found = json_.find(name);
     if (found != json_.end()) take(field, *found, where_ + ": " + name);
   }
+  void rare(const char* name, bool& flag) { (*this)(name, flag); }
 
  private:
   FieldReader(const nlohmann::ordered_json& json, std::string where) : json_(json), where_(std::move(where)) {}

@@ -83,6 +83,7 @@ AgentSpec released(std::uint64_t seed) {
   s.particle_filter_belief = PfBeliefOptions::released();
   s.training.bootstrap = BootstrapBelief::current;
   s.train_attack = "pgd-released";
+  s.start_anywhere = true;
   return s;
 }
 

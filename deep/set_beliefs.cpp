@@ -20,8 +20,8 @@ BeliefStates ObservedState::peek(std::span<const Lane>, std::span<const Action>,
   return {states, torch::ones({states.size(0), 1})};
 }
 
-SetBeliefs::SetBeliefs(SetBelief kind, const ObservationBall& ball, long states)
-    : FilterBeliefs(kind, BoxBelief(ball), states) {
+SetBeliefs::SetBeliefs(SetBelief kind, const ObservationBall& ball, long states, const GridworldOptions& world)
+    : FilterBeliefs(kind, BoxBelief(ball, world), states) {
   if (states < 1 || states > 4096) {
     throw InputError(fmt::format("belief: {} states, expected 1 to 4096", states));
   }

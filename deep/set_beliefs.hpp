@@ -29,7 +29,7 @@ class ObservedState final : public LaneBelief {
 /// part of the ball, or what BoxBelief keeps.
 class SetBeliefs final : public FilterBeliefs<BoxBelief> {
  public:
-  SetBeliefs(SetBelief kind, const ObservationBall& ball, long states);
+  SetBeliefs(SetBelief kind, const ObservationBall& ball, long states, const GridworldOptions& world = {});
 
   bool holds(Lane lane, Point truth) const override { return set(lane).contains(truth); }
   double size(Lane lane) const override { return set(lane).area(); }

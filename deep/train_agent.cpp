@@ -147,6 +147,7 @@ TrainingParts training_parts(const TrainedAgent& agent, torch::Device device) {
   parts.aggregator = aggregator_named(spec.aggregator);
   parts.attack = training_attack(spec.train_attack, ObservationBall(spec.eps), agent.values_in_rewards(), *agent.q);
   parts.loss = agent.loss;
+  parts.world = std::make_shared<GridworldPlane>(ContinuousGridworld(world_of(spec)));
   parts.device = device;
   return parts;
 }

@@ -45,7 +45,8 @@ std::filesystem::path times_file(std::filesystem::path agent) {
 }  // namespace
 
 Acting acting_of(const AgentSpec& spec) {
-  return {spec.belief, spec.belief_states, spec.aggregator, spec.random_actions, spec.particle_filter_belief};
+  return {spec.belief,         spec.belief_states,          spec.aggregator,
+          spec.random_actions, spec.particle_filter_belief, world_of(spec)};
 }
 
 Acting acting_of(const AgentSpec& spec, const ActingChange& change) {
@@ -67,8 +68,10 @@ std::shared_ptr<LaneBelief> make_belief(const Acting& acting, double eps, const 
   }
   const ObservationBall ball(eps);
   if (acting.belief == "observed") return std::make_shared<ObservedState>();
-  if (acting.belief == "ball") return std::make_shared<SetBeliefs>(SetBelief::ball, ball, acting.belief_states);
-  if (acting.belief == "exact") return std::make_shared<SetBeliefs>(SetBelief::exact, ball, acting.belief_states);
+  if (acting.belief == "ball")
+    return std::make_shared<SetBeliefs>(SetBelief::ball, ball, acting.belief_states, acting.world);
+  if (acting.belief == "exact")
+    return std::make_shared<SetBeliefs>(SetBelief::exact, ball, acting.belief_states, acting.world);
   if (!particle_filter)
     throw InputError(fmt::format("belief: {}, expected an agent with a particle filter", acting.belief));
   const char* cell = particle_filter->options().cell == PfCell::gru ? "pf-gru" : "pf-lstm";

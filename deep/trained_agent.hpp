@@ -38,6 +38,7 @@ struct Acting {
   std::string aggregator;
   double random_actions = 0;
   PfBeliefOptions filter_belief;  ///< of a particle filter
+  GridworldOptions world;         ///< that an exact belief knows
 };
 Acting acting_of(const AgentSpec& spec);
 

@@ -50,8 +50,12 @@ Match prepare_match(const AttackedAgent& o) {
   match.acting = deep::acting_of(spec, o.change);
   match.agent = deep::make_agent(*match.trained, match.acting);
   const std::shared_ptr<deep::ActionValueModule> values = match.trained->values_in_rewards();
-  deep::AttackTarget target{values, values, deep::identity_of(*match.trained, match.acting), spec.training.reward_scale,
-                            [&] { return deep::make_agent(*match.trained, match.acting); }};
+  deep::AttackTarget target{values,
+                            values,
+                            deep::identity_of(*match.trained, match.acting),
+                            [&] { return deep::make_agent(*match.trained, match.acting); },
+                            spec.training.reward_scale,
+                            match.acting.world};
   if (deep::attack_named(o.attack).knows == deep::Knowledge::defence) {
     const std::filesystem::path judge = judge_of(o, spec);
     if (!judge.empty()) target.judge = deep::read_agent(judge).values_in_rewards();

@@ -74,8 +74,8 @@ int evaluate(const EvaluateCommand& command) {
       options.file = file;
       options.attack = deep::attack_named(attack).name;
       const Match match = prepare_match(options);
-      const deep::AgentEvaluation e =
-          deep::evaluate_agent(*match.agent, *match.attack, ObservationBall(match.eps), command.episodes, command.seed);
+      const deep::AgentEvaluation e = deep::evaluate_agent(*match.agent, *match.attack, ObservationBall(match.eps),
+                                                           command.episodes, command.seed, match.acting.world);
       const std::vector<deep::SeedRun> run{{match.trained->spec.training.seed, command.seed, e.returns, e.seconds}};
       const deep::Estimate estimate = deep::estimate(run);
       const double half = estimate.shown() ? estimate.shown()->half_width : std::nan("");

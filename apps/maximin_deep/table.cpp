@@ -233,7 +233,7 @@ class TableMaker {
     };
     return {ready.make_agent(),
             deep::make_attack(setting, {ready.values, vanilla(deep::judge_seed(seed)).values_in_rewards(),
-                                        ready.identity, ready.unit, ready.make_agent})};
+                                        ready.identity, ready.make_agent, ready.unit})};
   }
 
   std::optional<deep::SeedRun> evaluate_cell(const PlannedCell& cell, std::uint64_t seed, deep::ResultCell& measured) {

@@ -49,8 +49,8 @@ int watch(const WatchCommand& command) {
     throw InputError(file.string() + ": exists, expected a new file name, or --force to replace it");
   }
   const Match match = prepare_match(command.options);
-  deep::EpisodeTrace trace =
-      deep::trace_episode(*match.agent, *match.attack, ObservationBall(match.eps), command.seed, command.episode);
+  deep::EpisodeTrace trace = deep::trace_episode(*match.agent, *match.attack, ObservationBall(match.eps), command.seed,
+                                                 command.episode, match.acting.world);
   trace.agent = match.trained->spec.name();
   trace.attack = command.options.attack;
   trace.training_seed = match.trained->spec.training.seed;

@@ -73,7 +73,7 @@ bool learn(Director& director, GridAgent& victim, const AttackSetting& setting, 
   }
   expect_folder_of(setting.file);
   bool stopped = false;
-  train_director(director, victim, ContinuousGridworld(), training, [&](const DirectorPoint& point) {
+  train_director(director, victim, ContinuousGridworld(target.world), training, [&](const DirectorPoint& point) {
     const double share = static_cast<double>(point.frames) / static_cast<double>(training.frames);
     stopped = setting.progress && !setting.progress(share, std::min(point.sampled_return, point.greedy_return));
     return !stopped;

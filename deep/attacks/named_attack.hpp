@@ -40,10 +40,12 @@ struct AttackTarget {
   std::shared_ptr<ActionValueModule> judge;
   /// Tells the agent, its weights and its judge from all others: a learned attack is one agent's.
   std::string identity;
-  /// What one reward is in the values that the agent goes by.
-  double unit = 1;
   /// A twin of the agent, for learned attacks to learn against.
   std::function<std::unique_ptr<GridAgent>()> twin;
+  /// What one reward is in the values that the agent goes by.
+  double unit = 1;
+  /// Where it plays.
+  GridworldOptions world = {};
 };
 
 struct AttackSetting {

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include <maximin/deep/agent_spec.hpp>
+#include <maximin/deep/attacks/simple_attacks.hpp>
+#include <maximin/deep/evaluation.hpp>
 #include <maximin/deep/trained_agent.hpp>
 
 #include "input_errors.hpp"
@@ -54,6 +56,8 @@ TEST(AgentSpec, EveryRecipeIsReadAsItIsWritten) {
   EXPECT_EQ(released["particle_filter"]["normalisation"], "batch");
   EXPECT_EQ(released["particle_filter_belief"]["correct"], false);
   EXPECT_EQ(released["target_order"], "aggregate-of-max");
+  EXPECT_EQ(released["start_anywhere"], true);
+  EXPECT_FALSE(to_json(spec).contains("start_anywhere"));
   AgentSpec changed = spec;
   changed.training.replay.beta_start = 0.5;
   EXPECT_NE(to_json(changed), to_json(spec));
@@ -239,6 +243,32 @@ TEST(Identity, TellsApartWhatActsDifferently) {
   const std::string filtered = identity_of(with_filter, acting);
   acting.filter_belief.hull_margin *= 2;
   EXPECT_NE(identity_of(with_filter, acting), filtered);
+}
+
+TEST(StartAnywhere, IsWhereEpisodesBeginAndWhatTheExactBeliefKnows) {
+  for (const bool anywhere : {false, true}) {
+    AgentSpec spec = recipe("bp-dqn", 0.3, 1);
+    merge_json(spec, {{"start_anywhere", anywhere}}, "mine.json");
+    const TrainedAgent agent = untrained(spec);
+    const auto playing = make_agent(agent, acting_of(spec));
+    NoAttack none;
+    const AgentEvaluation e = evaluate_agent(*playing, none, ObservationBall(0.3), 400, 1, world_of(spec));
+    EXPECT_EQ(e.truth_in_belief, 1);
+    const ContinuousGridworld world(world_of(spec));
+    bool at_an_end = false;
+    for (std::uint64_t k = 0; k < 400; ++k) {
+      Stream rng(1, k);
+      at_an_end = at_an_end || gridworld::ends_episode(gridworld::cell(world.reset(rng)));
+    }
+    EXPECT_EQ(at_an_end, anywhere);
+  }
+  // An agent that does not know of such starts does not hold them possible.
+  AgentSpec spec = recipe("bp-dqn", 0.3, 1);
+  const TrainedAgent agent = untrained(spec);
+  const auto playing = make_agent(agent, acting_of(spec));
+  spec.start_anywhere = true;
+  NoAttack none;
+  EXPECT_LT(evaluate_agent(*playing, none, ObservationBall(0.3), 400, 1, world_of(spec)).truth_in_belief, 1);
 }
 
 TEST_F(TrainAgent, TakesWhatIsThereAndRefusesWhatIsNotWhatItWouldTrain) {
