@@ -433,7 +433,7 @@ TEST(NamedAttack, ALearnedAttackBelongsToItsAgent) {
   const Acting acting = acting_of(spec);
   const auto target = [&](const TrainedAgent& a) {
     return AttackTarget{a.values_in_rewards(), a.values_in_rewards(), identity_of(a, acting),
-                        spec.training.reward_scale, [&a, acting] { return make_agent(a, acting); }};
+                        [&a, acting] { return make_agent(a, acting); }, spec.training.reward_scale};
   };
   AttackSetting setting;
   setting.name = "pa-ad-adaptive";
