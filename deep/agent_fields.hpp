@@ -41,6 +41,7 @@ constexpr auto words_of(PfWeighing) {
 constexpr auto words_of(PfTarget) {
   return std::to_array({"acted-on", "previous"});
 }
+
 template <class Visitor>
 void visit_fields(ReplayOptions& o, Visitor& visit) {
   visit("capacity", o.capacity);

@@ -8,6 +8,7 @@
 
 #include <maximin/deep/agent_fields.hpp>
 #include <maximin/deep/aggregate.hpp>
+#include <maximin/models/files/json_text.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -15,7 +16,7 @@ namespace {
 
 void require_word(const std::string& word, const std::vector<std::string>& words, const std::string& where) {
   if (std::find(words.begin(), words.end(), word) != words.end()) return;
-  throw InputError(fmt::format("{}: {}, expected {}", where, excerpt_of(word), fmt::join(words, ", ")));
+  throw InputError(fmt::format("{}: {}, expected {}", where, excerpt(word), fmt::join(words, ", ")));
 }
 
 /// The name becomes the name of a file.
@@ -25,7 +26,7 @@ void require_file_name(const std::string& name, const std::string& where) {
            std::string_view("-_.:+").find(c) != std::string_view::npos;
   };
   if (!name.empty() && name.size() <= 64 && name[0] != '.' && std::all_of(name.begin(), name.end(), allowed)) return;
-  throw InputError(fmt::format("{}: {}, expected at most 64 letters, digits and -_.:+", where, excerpt_of(name)));
+  throw InputError(fmt::format("{}: {}, expected at most 64 letters, digits and -_.:+", where, excerpt(name)));
 }
 
 double weights_of(const QNetworkShape& shape) {

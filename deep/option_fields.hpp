@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <maximin/models/files/json_text.hpp>
 #include <maximin/models/nearest_name.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -70,12 +71,6 @@ class FieldWriter {
   nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
 };
 
-/// A value as it stands in a document, short enough for a line.
-inline std::string excerpt_of(const nlohmann::ordered_json& value) {
-  const std::string text = value.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
-  return text.size() <= 40 ? text : text.substr(0, 37) + "...";
-}
-
 /// Takes over the fields that an object names and leaves the others as they are. Throws InputError, "WHERE: FIELD: what
 /// is wrong, expected ...", on a field that there is none of or that is of another type. Ranges are for others to
 /// check.
@@ -114,11 +109,11 @@ class FieldReader {
       const auto words = words_of(field);
       const auto found = std::find(words.begin(), words.end(), json);
       if (found == words.end()) {
-        throw InputError(fmt::format("{}: {}, expected {}", here, excerpt_of(json), fmt::join(words, ", ")));
+        throw InputError(fmt::format("{}: {}, expected {}", here, excerpt(json), fmt::join(words, ", ")));
       }
       field = static_cast<T>(found - words.begin());
     } else {
-      if (!fits<T>(json)) throw InputError(fmt::format("{}: {}, expected {}", here, excerpt_of(json), kind_of<T>()));
+      if (!fits<T>(json)) throw InputError(fmt::format("{}: {}, expected {}", here, excerpt(json), kind_of<T>()));
       field = json.get<T>();
     }
   }
@@ -149,7 +144,7 @@ class FieldReader {
   void refuse_unknown() const {
     for (const auto& item : json_.items()) {
       if (std::find(names_.begin(), names_.end(), item.key()) != names_.end()) continue;
-      throw InputError(fmt::format("{}: {}: no such field, expected {}", where_, excerpt_of(item.key()),
+      throw InputError(fmt::format("{}: {}: no such field, expected {}", where_, excerpt(item.key()),
                                    nearest_or_all(item.key(), names_)));
     }
   }

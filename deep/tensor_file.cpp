@@ -15,6 +15,7 @@
 #include <zlib.h>
 
 #include <maximin/models/files/input_file.hpp>
+#include <maximin/models/files/json_text.hpp>
 #include <maximin/models/files/output_file.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -49,15 +50,6 @@ std::optional<torch::ScalarType> type_named(const std::string& text) {
 std::uint32_t crc_of(std::string_view bytes) {
   uLong crc = crc32_z(0, nullptr, 0);
   return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
-/// The JSON of the heading. Deep nesting would overflow the stack of whoever copies or prints it.
-nlohmann::ordered_json parse_heading(std::string_view text) {
-  const auto not_too_deep = [](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
-    if (depth > 32) throw InputError("a heading nested deeper than 32 levels, expected kind, about and tensors");
-    return true;
-  };
-  return nlohmann::ordered_json::parse(text, not_too_deep);
 }
 
 /// At most 8 whole numbers whose product, zeros left out, is one that LibTorch can count with.
@@ -158,7 +150,7 @@ TensorFile read_tensor_file(const std::filesystem::path& path, const std::string
   if (line == std::string_view::npos) throw refuse("no heading, expected a line of JSON");
   TensorFile file;
   try {
-    const auto heading = parse_heading(rest.substr(0, line));
+    const auto heading = parse_json(rest.substr(0, line), 32, "heading", "kind, about and tensors");
     file.kind = heading.at("kind").get<std::string>();
     if (file.kind != kind) {
       throw InputError(fmt::format("a file of kind '{}', expected '{}'", file.kind, kind));

@@ -30,9 +30,9 @@ std::shared_ptr<Loss> make_loss(const AgentSpec& spec) {
     return std::make_shared<WocarLoss>(options_of_loss(spec, spec.wocar), spec.network, rng);
   }
   TdLossOptions o;
-  o.discount = spec.discount;
+  o.td.discount = spec.discount;
   o.aggregator = aggregator_named(spec.aggregator);
-  o.double_q = spec.double_q;
+  o.td.double_q = spec.double_q;
   o.order = spec.target_order;
   return std::make_shared<TdLoss>(o);
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 
+#include <maximin/models/files/json_text.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin {
@@ -36,26 +37,8 @@ Lines complete_lines(const fs::path& path) {
   return lines;
 }
 
-/// The first key whose value differs between two configurations.
-std::string first_difference(const Json& old_header, const Json& new_header) {
-  for (const auto& [key, value] : new_header.items()) {
-    if (!old_header.contains(key)) return fmt::format("it has no {}", key);
-    if (old_header[key] == value) continue;
-    if (value.is_object() && old_header[key].is_object()) return first_difference(old_header[key], value);
-    return fmt::format("{} is {} there and {} now", key, old_header[key].dump(), value.dump());
-  }
-  return "it has more settings";
-}
-
 Json parse_line(const fs::path& path, std::size_t number, const std::string& line) {
-  const std::string where = fmt::format("{}:{}", path.string(), number);
-  const auto not_too_deep = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > 16) throw InputError(where + ": nested too deep, expected a line written by --trials-out");
-    return true;
-  };
-  Json json = Json::parse(line, not_too_deep, false);
-  if (!json.is_discarded()) return json;
-  throw InputError(where + ": not JSON, expected a line written by --trials-out");
+  return parse_json(line, 16, fmt::format("{}:{}", path.string(), number), "a line written by --trials-out");
 }
 
 TrialRecord parse_record(const fs::path& path, std::size_t number, const std::string& line, long expected) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <maximin/apps/maximin/describe.hpp>
+#include <maximin/models/files/json_text.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::apps {
@@ -46,20 +47,8 @@ void check_size(std::size_t size, const Model<double>& model, const std::string&
                                model.mdp.states()));
 }
 
-/// The document; refused beyond a depth, since whoever walks or destroys it may do so by recursion.
-nlohmann::json parse(const std::string& text, const std::string& path) {
-  const auto shallow = [&path](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
-    if (depth <= deepest_json) return true;
-    throw InputError(fmt::format("{}: nested deeper than {} levels, expected a list of actions", path, deepest_json));
-  };
-  auto json = nlohmann::json::parse(text, shallow, false);
-  if (json.is_discarded())
-    throw InputError(path + ": not valid JSON, expected a list of actions or an object with \"policy\"");
-  return json;
-}
-
 /// The action of one entry: a whole number is an index and a string is a name.
-Action action_of(const nlohmann::json& entry, const Model<double>& model, const std::string& where) {
+Action action_of(const nlohmann::ordered_json& entry, const Model<double>& model, const std::string& where) {
   const auto refuse = [&](const std::string& what, const std::string& expected) {
     throw InputError(fmt::format("{}: {}, expected {}", where, what, expected));
   };
@@ -79,9 +68,9 @@ Action action_of(const nlohmann::json& entry, const Model<double>& model, const 
   return static_cast<Action>(found - model.action_names.begin());
 }
 
-Policy policy_of_json(const nlohmann::json& json, const Model<double>& model, const std::string& path) {
+Policy policy_of_json(const nlohmann::ordered_json& json, const Model<double>& model, const std::string& path) {
   const bool bare = json.is_array();
-  const nlohmann::json* list = &json;
+  const nlohmann::ordered_json* list = &json;
   if (!bare) {
     const auto member = json.find("policy");
     if (member == json.end() || !member->is_array())
@@ -110,7 +99,10 @@ Policy read_policy_file(const std::string& path, const Model<double>& model) {
   const std::string text = read_text(path);
   const auto first = text.find_first_not_of(" \t\r\n");
   const bool is_json = first != std::string::npos && (text[first] == '{' || text[first] == '[');
-  return is_json ? policy_of_json(parse(text, path), model, path) : policy_of_list(text, model, path);
+  return is_json
+             ? policy_of_json(parse_json(text, deepest_json, path, "a list of actions or an object with \"policy\""),
+                              model, path)
+             : policy_of_list(text, model, path);
 }
 
 }  // namespace maximin::apps

@@ -274,27 +274,23 @@ std::string block_note(const std::string& block, const deep::Effort& effort) {
         "MinBest and best-response observations (with PF-LSTM and min under PGD alone), SA, WocaR, Radial and CAR for "
         "{}, without attack, as they are defined; their bounds take most of the time. BP-DQN with the mean has three "
         "things more that no other has, chosen on another seed: that aggregator, 2 % random actions, and the average "
-        "of "
-        "its last weights; see the ablation. Losses see rewards times 0.02: so are lambda of CAR and the margin of SA "
-        "to "
-        "be read. All networks have waves of the coordinates as features, which blind the gradients of PGD and MinBest "
-        "in a large ball: below are stronger attacks on the network too. Attacks see the network, not beliefs; in the "
-        "place of the sure agent's, which has none, a vanilla DQN. Truth in belief and belief area are of the set; of "
-        "a "
-        "particle filter they are of the box around its particles, widened by a quarter of the radius.",
+        "of its last weights; see the ablation. Losses see rewards times 0.02: so are lambda of CAR and the margin of "
+        "SA to be read. All networks have waves of the coordinates as features, which blind the gradients of PGD and "
+        "MinBest in a large ball: below are stronger attacks on the network too. Attacks see the network, not "
+        "beliefs; in the place of the sure agent's, which has none, a vanilla DQN. Truth in belief and belief area "
+        "are of the set; of a particle filter they are of the box around its particles, widened by a quarter of the "
+        "radius.",
         training("dqn"), training("bp-dqn"), training("sa-dqn"));
   }
   if (block == further_block) {
-    return "Random and constant offset look at the truth alone; PGD as released (with the paper's figures for PGD) and "
-           "PGD "
-           "from 10 starts at the network; the others at the whole defence. Best responses and the descent are judged "
-           "by "
-           "the values of a vanilla DQN of a seed that no training saw; for the director they are what it begins with.";
+    return "Random and constant offset look at the truth alone; PGD as released (with the paper's figures for PGD) "
+           "and PGD from 10 starts at the network; the others at the whole defence. Best responses and the descent "
+           "are judged by the values of a vanilla DQN of a seed that no training saw; for the director they are what "
+           "it begins with.";
   }
   if (block == ablation_block) {
     return "Maximin only: the same network, acting on the ball. Belief only: DQN on the mean of the particles. The "
-           "rest is "
-           "not in the paper.";
+           "rest is not in the paper.";
   }
   if (block == noisy_block) {
     return "Trained under PGD at 0.1 from the beginning, learning from what it believes instead of the truth, its "

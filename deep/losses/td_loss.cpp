@@ -1,7 +1,5 @@
 #include <maximin/deep/losses/td_loss.hpp>
 
-#include <maximin/deep/losses/td_error.hpp>
-
 namespace maximin::deep {
 
 torch::Tensor values_over(const BeliefStates& belief, ActionValueModule& q) {
@@ -19,20 +17,20 @@ torch::Tensor TdLoss::target_values(const Batch& batch, QNetwork& online, QNetwo
   } else if (options_.order == TargetOrder::belief_greedy) {
     const torch::Tensor there = target.forward(batch.next_states).gather(1, q.argmax(2));
     next = aggregate(options_.aggregator, there.unsqueeze(2), weights).squeeze(1);
-  } else if (options_.double_q) {
+  } else if (options_.td.double_q) {
     const torch::Tensor chooser = aggregate(options_.aggregator, values_over(batch.next_belief, online), weights);
     next = of_actions(aggregate(options_.aggregator, q, weights), chooser.argmax(1));
   } else {
     next = aggregate(options_.aggregator, q, weights).amax(1);
   }
-  return bootstrapped(batch, options_.discount, next);
+  return bootstrapped(batch, options_.td.discount, next);
 }
 
 LossValue TdLoss::operator()(const Batch& batch, QNetwork& online, QNetwork& target, const Progress&) {
   const torch::Tensor y = target_values(batch, online, target);
   const torch::Tensor q = of_actions(online.forward(batch.states), batch.actions);
   const torch::Tensor error = y - q;
-  return {huber(error, options_.huber), error.detach()};
+  return {huber(error, options_.td.huber), error.detach()};
 }
 
 }  // namespace maximin::deep

@@ -2,6 +2,7 @@
 
 #include <maximin/deep/aggregate.hpp>
 #include <maximin/deep/loss.hpp>
+#include <maximin/deep/losses/td_error.hpp>
 
 namespace maximin::deep {
 
@@ -15,11 +16,9 @@ enum class TargetOrder {
 };
 
 struct TdLossOptions {
-  double discount = 0.99;
+  TdOptions td{.double_q = false};  ///< the two networks are for the order max_of_aggregate alone
   AnyAggregator aggregator = MinAggregator{};
-  bool double_q = false;  ///< the online network chooses the action, the target network values it
   TargetOrder order = TargetOrder::max_of_aggregate;
-  double huber = 1;  ///< where the squared loss becomes linear
 };
 
 /// The Huber loss of Q(s_t, a_t) against y = R_t + gamma max_a Aggregate_{m in M_{t+1}} Q'(m, a), or R_t where the

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <maximin/models/files/input_file.hpp>
+#include <maximin/models/files/json_text.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
@@ -15,13 +16,6 @@ using Json = nlohmann::ordered_json;
 
 /// A device has no end; a table of results is a hundredth of it.
 constexpr std::size_t most_bytes = std::size_t{1} << 28U;
-
-/// What stands there, short enough for a line.
-std::string excerpt(const Json& json) {
-  std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > 40) text = text.substr(0, 37) + "...";
-  return text;
-}
 
 /// What was read from text is unsigned where it can be; what a program put there may be signed.
 bool is_whole(const Json& json) {
@@ -157,14 +151,7 @@ void Fields::expect_schema(std::string_view schema, std::uint64_t version) const
 }
 
 Json read_json_file(const std::filesystem::path& path, std::string_view expected) {
-  const std::string text = file_bytes(path, most_bytes, expected);
-  const auto not_too_deep = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > 64) throw InputError(fmt::format("{}: nested too deep, expected {}", path.string(), expected));
-    return true;
-  };
-  Json json = Json::parse(text, not_too_deep, false);
-  if (json.is_discarded()) throw InputError(fmt::format("{}: not JSON, expected {}", path.string(), expected));
-  return json;
+  return parse_json(file_bytes(path, most_bytes, expected), 64, path.string(), expected);
 }
 
 std::string readable_json(const Json& json) {

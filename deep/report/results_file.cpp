@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <maximin/deep/report/json_fields.hpp>
+#include <maximin/models/files/json_text.hpp>
 #include <maximin/models/files/output_file.hpp>
 #include <maximin/theory/error.hpp>
 
@@ -15,22 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// The first setting that differs, in words.
-std::string first_other_setting(const Json& old_one, const Json& new_one) {
-  if (!old_one.is_object() || !new_one.is_object()) return "other settings";
-  for (const auto& [key, value] : new_one.items()) {
-    if (!old_one.contains(key)) return fmt::format("no {}", key);
-    if (old_one[key] == value) continue;
-    if (value.is_object() && old_one[key].is_object()) return first_other_setting(old_one[key], value);
-    return fmt::format("{} is {} there and {} now", key, old_one[key].dump(), value.dump());
-  }
-  return "more settings there";
-}
-
 void expect_same_configuration(const Json& old_one, const Json& new_one, std::string_view where) {
   if (old_one == new_one) return;
   throw InputError(fmt::format("{}: another table ({}), expected the same configuration as now", where,
-                               first_other_setting(old_one, new_one)));
+                               first_difference(old_one, new_one)));
 }
 
 ResultBlock& block_of(ResultTable& table, std::string_view name) {

@@ -30,7 +30,7 @@ REFUSALS = [
     refused(["train", "dqn", "--frames", "0"], "--frames: 0"),
     refused(["train", "dqn", "--device", "gpu"], "--device: gpu, expected cpu, cuda or cuda:N"),
     refused(["train", "dqn", "--config", "c.json"], "c.json: not JSON", c_json="{"),
-    refused(["train", "dqn", "--config", "c.json"], "too deep", c_json="[" * 100000),
+    refused(["train", "dqn", "--config", "c.json"], "deeper than 64 levels", c_json="[" * 100000),
     refused(["train", "dqn", "--config", "c.json"], 'c.json: "framse": no such field', c_json='{"framse": 3}'),
     refused(["train", "dqn", "--config", "c.json"], "c.json: kind", c_json='{"kind": "../dqn"}'),
     refused(["train", "dqn", "--config", "c.json", "--folder", "f"], "start_from: dqn", c_json='{"start_from": "dqn"}'),

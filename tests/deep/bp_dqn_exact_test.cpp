@@ -138,8 +138,8 @@ Learned train(const LipschitzPlaces& m, Learner learner, Opponent opponent) {
   } else {
     parts.attack = std::make_shared<NoAttack>();
   }
-  parts.loss =
-      std::make_shared<TdLoss>(TdLossOptions{.discount = m.model.mdp.discount(), .aggregator = MinAggregator{}});
+  parts.loss = std::make_shared<TdLoss>(
+      TdLossOptions{.td = {.discount = m.model.mdp.discount(), .double_q = false}, .aggregator = MinAggregator{}});
   parts.world = std::make_shared<PlacesWorld>(m.environment, m.places);
   Trainer trainer(o, parts);
   while (!trainer.done()) trainer.stretch();

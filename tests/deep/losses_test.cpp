@@ -87,7 +87,7 @@ TEST(TdLoss, OrdersOfBestActionAndWorstState) {
   batch.next_belief = {torch::tensor({0., 2., 2., 2., 1., 0.}, torch::kDouble).view({3, 2, 1}),
                        torch::full({3, 2}, 0.5, torch::kDouble)};
   Affine q;
-  TdLossOptions options{.discount = 0.5};
+  TdLossOptions options{.td = {.discount = 0.5, .double_q = false}};
   const auto targets = [&] { return TdLoss(options).target_values(batch, *q.online, *q.target); };
   // max_a min_m: max(0, -1) = 0; an end; max(0, 1) = 1.
   expect_values(targets(), {1, 1, -1 + 0.5});

@@ -103,7 +103,7 @@ TEST_F(TrialFiles, HaveOneWriterAtATime) {
 TEST_F(TrialFiles, NestedWithoutEndAreRefused) {
   write(path_, std::string(3'000'000, '[') + "\n");
   EXPECT_EQ(complaint([&] { TrialFile::resume(path_, header_); }),
-            path_.string() + ":1: nested too deep, expected a line written by --trials-out");
+            path_.string() + ":1: nested deeper than 16 levels, expected a line written by --trials-out");
 }
 
 TEST_F(TrialFiles, NumbersOutOfRangeAreRefused) {

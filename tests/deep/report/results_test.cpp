@@ -186,7 +186,7 @@ TEST(ResultFile, RefusesOtherFilesAndLeavesThemAlone) {
     ResultFile::open(path, plan);
     ADD_FAILURE() << "another configuration";
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("another table (no episodes)"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("another table (it has no episodes)"), std::string::npos) << e.what();
   }
   EXPECT_THROW(write_results(scratch / "no" / "folder.json", plan), InputError);
   EXPECT_THROW(read_results(scratch / "none.json"), InputError);
