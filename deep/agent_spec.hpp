@@ -28,9 +28,10 @@ struct AgentSpec {
   double eps = 0.1;          ///< radius of the ball that it is trained to withstand and believes in
   QNetworkShape network;
   std::string loss = "td";  ///< td, sa, wocar, radial, car; "loss_options" in files are those of it:
-  /// As in their papers but for three things. Radial-DQN, CAR-DQN and WocaR-DQN have CROWN's bounds. Radial-DQN's
-  /// overlap is of merged bounds of differences. WocaR-DQN's critic has a floor, the discounted cost of never arriving,
-  /// -100 rewards.
+  /// As in their papers but for some things. Radial-DQN, CAR-DQN and WocaR-DQN have CROWN's bounds. Radial-DQN's
+  /// overlap is of merged bounds of differences. WocaR-DQN has the released robust term and ramp, and its critic a
+  /// floor, the discounted cost of never arriving: -100 rewards at a reward_scale of 0.02. Losses see scaled rewards:
+  /// so are kappa, lambda and the margin to be read.
   SaLossOptions sa;
   RadialLossOptions radial{.bounds = BoundMethod::crown, .overlap = RadialOverlap::merged_difference};
   CarLossOptions car{.bounds = BoundMethod::crown};

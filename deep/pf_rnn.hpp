@@ -79,7 +79,7 @@ struct PfState {
 /// What chance decides in one step. Given this, a step is a differentiable function.
 struct PfNoise {
   torch::Tensor normal;          ///< [n, K, H], standard normal: of the candidates
-  torch::Tensor uniform;         ///< [n, K] in [0, 1): of the ancestors. Systematic resampling takes the first column
+  torch::Tensor uniform;         ///< [n, K] in [0, 1]: of the ancestors. Systematic resampling takes the first column
   torch::Tensor embedding_mask;  ///< dropout's factors of the embedded input [n, E]; not defined where there is none
   torch::Tensor hidden_mask;     ///< dropout's factors of what is read [n, K, H]; not defined where there is none
 };

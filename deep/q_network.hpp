@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <torch/torch.h>
 
+#include <maximin/gridworld/gridworld.hpp>
 #include <maximin/theory/random.hpp>
 
 namespace maximin::deep {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include <maximin/deep/attacks/director.hpp>
 #include <maximin/deep/attacks/targeted_search.hpp>

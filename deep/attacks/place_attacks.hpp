@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include <maximin/deep/agent.hpp>
 #include <maximin/deep/places.hpp>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include <maximin/deep/agent.hpp>
 #include <maximin/gridworld/observation_ball.hpp>
 
