@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <span>
+#include <utility>
 
 #include <maximin/deep/report/trace.hpp>
 #include <maximin/gridworld/box_union.hpp>
@@ -65,10 +67,11 @@ class GridAttack {
                        std::span<Stream> streams, std::span<Point> shown) = 0;
 };
 
-/// An attack made of another one, which must outlive it: forgets when that forgets.
+/// An attack made of another one, which it keeps, or which must outlive it: when it forgets, so does that.
 class WrappedAttack : public GridAttack {
  public:
   explicit WrappedAttack(GridAttack& attack) : attack_(&attack) {}
+  explicit WrappedAttack(std::shared_ptr<GridAttack> attack) : attack_(attack.get()), kept_(std::move(attack)) {}
   void resize(Lane lanes) override { attack_->resize(lanes); }
   void forget(Lane lane) override { attack_->forget(lane); }
 
@@ -77,6 +80,7 @@ class WrappedAttack : public GridAttack {
 
  private:
   GridAttack* attack_;
+  std::shared_ptr<GridAttack> kept_;
 };
 
 }  // namespace maximin::deep

@@ -33,7 +33,7 @@ constexpr std::size_t most_bytes = std::size_t{1} << 34U;
 constexpr std::array<std::pair<const char*, torch::ScalarType>, 4> types{
     {{"float32", torch::kFloat}, {"float64", torch::kDouble}, {"int64", torch::kLong}, {"uint8", torch::kByte}}};
 
-const char* name_of(torch::ScalarType type) {
+const char* type_name_of(torch::ScalarType type) {
   for (const auto& [name, t] : types) {
     if (t == type) return name;
   }
@@ -100,8 +100,8 @@ const torch::Tensor& TensorFile::at(const std::string& name) const {
 void TensorFile::copy_to(const std::string& name, torch::Tensor into) const {
   const torch::Tensor& from = at(name);
   if (from.sizes() != into.sizes() || from.scalar_type() != into.scalar_type()) {
-    throw InputError(fmt::format("tensor {} is {} {}, expected {} {}", name, deep::name_of(from.scalar_type()),
-                                 from.sizes().vec(), deep::name_of(into.scalar_type()), into.sizes().vec()));
+    throw InputError(fmt::format("tensor {} is {} {}, expected {} {}", name, type_name_of(from.scalar_type()),
+                                 from.sizes().vec(), type_name_of(into.scalar_type()), into.sizes().vec()));
   }
   torch::NoGradGuard no_grad;
   into.copy_(from);
@@ -110,7 +110,7 @@ void TensorFile::copy_to(const std::string& name, torch::Tensor into) const {
 void write_tensor_file(const std::filesystem::path& path, const TensorFile& content) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const auto& [name, tensor] : content.tensors) {
-    list.push_back({{"name", name}, {"type", name_of(tensor.scalar_type())}, {"sizes", tensor.sizes().vec()}});
+    list.push_back({{"name", name}, {"type", type_name_of(tensor.scalar_type())}, {"sizes", tensor.sizes().vec()}});
   }
   std::string bytes(magic);
   bytes += nlohmann::ordered_json{{"kind", content.kind}, {"about", content.about}, {"tensors", list}}.dump() + '\n';

@@ -220,7 +220,7 @@ void Trainer::copy_to_target() {
   parts_.loss->copy_targets();
   copied_at_ = frames_;
   const double left = static_cast<double>(options_.frames - frames_) / static_cast<double>(options_.frames);
-  if (left >= options_.averaged_share) return;
+  if (!(options_.averaged_share > 0) || left >= options_.averaged_share) return;
   ++averaged_;
   torch::NoGradGuard no_grad;
   const auto online = parts_.online->parameters(), average = average_->parameters();

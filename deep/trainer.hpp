@@ -39,7 +39,8 @@ struct TrainOptions {
   long explore_frames = 200'000;  ///< over which the share of random actions falls linearly
   long target_every = 2000;       ///< frames between hard copies to the target network
   /// Share of the frames, at the end, over which what is copied to the target is averaged too: in the end the network
-  /// has the average of these weights (Izmailov et al. 2018), which forgets the noise of single updates. 0: none.
+  /// has the average of these weights (Izmailov et al. 2018), which forgets the noise of single updates; what a loss
+  /// has besides, as WocaR's critic, stays as it is. 0: none.
   double averaged_share = 0;
   double reward_scale = 0.02;    ///< networks see rewards times this
   long stretch_frames = 20'000;  ///< see Trainer::stretch

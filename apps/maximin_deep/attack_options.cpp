@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <maximin/apps/common/option_checks.hpp>
+#include <maximin/apps/common/program.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::apps {
@@ -23,6 +24,10 @@ void add_attack_options(CLI::App& sub, AttackedAgent& o) {
   sub.add_option("--attack-seed", o.attack_seed, "Seed of a learned attack's training")->check(seed_number());
   sub.add_option("--attacker", o.attacker, "File of a learned attack: read where it exists, else written");
   sub.add_flag("--quick", o.quick, "Learned attacks learn for seconds");
+}
+
+void note_if_quick(const AttackedAgent& o) {
+  if (o.quick) note("--quick: learned attacks learn for seconds, to see that it works; they are weak");
 }
 
 namespace {
@@ -67,6 +72,10 @@ Match prepare_match(const AttackedAgent& o) {
   setting.seed = o.attack_seed;
   setting.quick = o.quick;
   setting.file = o.attacker;
+  setting.progress = [&](double share, double) {
+    if (o.progress) o.progress(fmt::format("{} learns, {:.0f} %", o.attack, 100 * share));
+    return true;
+  };
   match.attack = deep::make_attack(setting, target);
   return match;
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -22,7 +23,12 @@ struct AttackedAgent {
   std::uint64_t attack_seed = 1;
   std::filesystem::path attacker;  ///< where a learned attack is kept
   bool quick = false;
+  /// Is told what the work is at, e.g. for how much of its training a learned attack has learned.
+  std::function<void(const std::string&)> progress;
 };
+
+/// Tells that numbers of learned attacks are quick ones, where they are.
+void note_if_quick(const AttackedAgent& options);
 
 /// Declares them, all but the file and the attack.
 void add_attack_options(CLI::App& sub, AttackedAgent& options);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <maximin/apps/common/json_output.hpp>
 #include <maximin/apps/common/option_checks.hpp>
 #include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/progress.hpp>
 #include <maximin/apps/common/table.hpp>
 #include <maximin/apps/maximin_deep/attack_options.hpp>
 #include <maximin/apps/maximin_deep/commands.hpp>
@@ -58,6 +60,8 @@ void expect_one_attacker(const EvaluateCommand& command) {
 
 int evaluate(const EvaluateCommand& command) {
   expect_one_attacker(command);
+  note_if_quick(command.options);
+  std::optional<StageProgress> line("evaluate");
   Table table;
   table.column("agent", Align::left).column("attack", Align::left).column("eps", Align::point);
   table.column("return", Align::point)
@@ -73,6 +77,9 @@ int evaluate(const EvaluateCommand& command) {
       AttackedAgent options = command.options;
       options.file = file;
       options.attack = deep::attack_named(attack).name;
+      const std::string what = fmt::format("{}, {}", file.stem().string(), attack);
+      options.progress = [&](const std::string& at) { line->stage(fmt::format("{}: {}", what, at)); };
+      line->stage(what);
       const Match match = prepare_match(options);
       const deep::AgentEvaluation e = deep::evaluate_agent(*match.agent, *match.attack, ObservationBall(match.eps),
                                                            command.episodes, command.seed, match.acting.world);
@@ -104,8 +111,10 @@ int evaluate(const EvaluateCommand& command) {
                      {"returns", e.returns}});
     }
   }
+  line.reset();
   if (command.json) {
-    print(json_text(Json{{"episodes", command.episodes}, {"seed", command.seed}, {"results", all}}));
+    print(json_text(Json{
+        {"episodes", command.episodes}, {"seed", command.seed}, {"quick", command.options.quick}, {"results", all}}));
     return ExitCode::success;
   }
   print(table.text());
@@ -136,7 +145,7 @@ void add_evaluate(CLI::App& app, Task& task) {
   sub->add_flag("--json", command->json, "Print the result as JSON");
   std::string listing = "Attacks:\n";
   for (const auto& a : deep::named_attacks()) {
-    listing += fmt::format("  {:16} {}{}\n", a.name, words_of(a.knows), a.learned ? ", learned" : "");
+    listing += fmt::format("  {:20} {}{}\n", a.name, words_of(a.knows), a.learned ? ", learned" : "");
   }
   sub->footer(listing +
               "Examples:\n"

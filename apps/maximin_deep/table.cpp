@@ -180,6 +180,7 @@ class TableMaker {
     std::shared_ptr<deep::ActionValueModule> values;
     std::string identity;
     double unit = 1;  ///< what one reward is in the values that the agent goes by
+    GridworldOptions world = {};
   };
 
   Ready ready_to_act(const PlannedCell& cell, std::uint64_t seed,
@@ -201,7 +202,10 @@ class TableMaker {
     }
     return {[trained, acting] { return deep::make_agent(*trained, acting); },
             fmt::format("{}-{}-{}-random{:g}", spec.name(), acting.belief, acting.aggregator, acting.random_actions),
-            trained->values_in_rewards(), deep::identity_of(*trained, acting), spec.training.reward_scale};
+            trained->values_in_rewards(),
+            deep::identity_of(*trained, acting),
+            spec.training.reward_scale,
+            acting.world};
   }
 
   /// Solved once for each radius, in seconds: by as many squares to a move as bench/gridworld_sure shows to pay.
@@ -215,6 +219,7 @@ class TableMaker {
   struct Match {
     std::unique_ptr<deep::GridAgent> agent;
     std::shared_ptr<deep::GridAttack> attack;  ///< empty where its training was interrupted
+    GridworldOptions world;
   };
 
   Match prepare(const PlannedCell& cell, std::uint64_t seed) {
@@ -231,9 +236,10 @@ class TableMaker {
                             100 * share));
       return !stop_.load();
     };
-    return {ready.make_agent(),
-            deep::make_attack(setting, {ready.values, vanilla(deep::judge_seed(seed)).values_in_rewards(),
-                                        ready.identity, ready.make_agent, ready.unit})};
+    const deep::AttackTarget target{ready.values,   vanilla(deep::judge_seed(seed)).values_in_rewards(),
+                                    ready.identity, ready.make_agent,
+                                    ready.unit,     ready.world};
+    return {ready.make_agent(), deep::make_attack(setting, target), ready.world};
   }
 
   std::optional<deep::SeedRun> evaluate_cell(const PlannedCell& cell, std::uint64_t seed, deep::ResultCell& measured) {
@@ -241,7 +247,7 @@ class TableMaker {
     const Match match = prepare(cell, seed);
     if (!match.attack) return std::nullopt;
     const deep::AgentEvaluation e = deep::evaluate_agent(*match.agent, *match.attack, ObservationBall(cell.attack_eps),
-                                                         command_.episodes, evaluation_seed(seed));
+                                                         command_.episodes, evaluation_seed(seed), match.world);
     measured.measures = {{"truth in belief", e.truth_in_belief},
                          {"belief area", e.belief_size},
                          {"empty intersections", static_cast<double>(e.empty_intersections)}};
@@ -276,7 +282,7 @@ class TableMaker {
       const Match match = prepare(cell, command_.seed(0));
       if (!match.attack) continue;
       deep::EpisodeTrace trace = deep::trace_episode(*match.agent, *match.attack, ObservationBall(cell.attack_eps),
-                                                     evaluation_seed(command_.seed(0)), 3);
+                                                     evaluation_seed(command_.seed(0)), 3, match.world);
       trace.agent = cell.cell.agent;
       trace.attack = cell.cell.attack;
       trace.training_seed = command_.seed(0);

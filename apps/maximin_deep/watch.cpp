@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 
 #include <maximin/apps/common/option_checks.hpp>
 #include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/progress.hpp>
 #include <maximin/apps/maximin_deep/attack_options.hpp>
 #include <maximin/apps/maximin_deep/commands.hpp>
 #include <maximin/deep/evaluation.hpp>
@@ -48,7 +50,11 @@ int watch(const WatchCommand& command) {
     if (command.force || file.empty() || !std::filesystem::exists(file)) continue;
     throw InputError(file.string() + ": exists, expected a new file name, or --force to replace it");
   }
-  const Match match = prepare_match(command.options);
+  note_if_quick(command.options);
+  std::optional<StageProgress> line("watch");
+  AttackedAgent options = command.options;
+  options.progress = [&](const std::string& at) { line->stage(at); };
+  const Match match = prepare_match(options);
   deep::EpisodeTrace trace = deep::trace_episode(*match.agent, *match.attack, ObservationBall(match.eps), command.seed,
                                                  command.episode, match.acting.world);
   trace.agent = match.trained->spec.name();
@@ -57,6 +63,7 @@ int watch(const WatchCommand& command) {
   const Overwrite overwrite = command.force ? Overwrite::replace : Overwrite::refuse;
   write_file(command.output, deep::animated_svg(trace), overwrite);
   if (!command.trace.empty()) deep::write_trace(command.trace, trace);
+  line.reset();
   print(fmt::format("{}: {} under {}, eps {:g}, episode {}: {}\n", command.output.string(), trace.agent, trace.attack,
                     match.eps, command.episode, trace.outcome()));
   return ExitCode::success;

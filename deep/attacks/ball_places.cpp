@@ -11,6 +11,12 @@ Point grid_place(const ObservationBall& ball, Point truth, int n, int i, int j) 
   return ball.project(truth, {along(truth.x, i), along(truth.y, j)});
 }
 
+void add_grid(const ObservationBall& ball, Point truth, int n, std::vector<Point>& places) {
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) places.push_back(grid_place(ball, truth, n, i, j));
+  }
+}
+
 BallBounds::BallBounds(std::span<const Point> truths, const ObservationBall& ball, torch::Device device) {
   std::vector<Point> lows, highs;
   for (const Point& s : truths) {

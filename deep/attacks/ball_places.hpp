@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <torch/torch.h>
 
@@ -12,6 +13,8 @@ namespace maximin::deep {
 /// Place (i, j) of a grid of n x n over what may be shown when `truth` is true: (0, 0) is its lower left corner,
 /// (n-1, n-1) its upper right. n >= 2, 0 <= i, j < n.
 Point grid_place(const ObservationBall& ball, Point truth, int n, int i, int j);
+/// Appends all of them, i outermost; none where n is 0.
+void add_grid(const ObservationBall& ball, Point truth, int n, std::vector<Point>& places);
 
 /// Between what the coordinates of an observation lie, [n, 2] each.
 struct BallBounds {

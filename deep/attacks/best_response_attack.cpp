@@ -31,9 +31,7 @@ Point BestResponseAttack::carried_over(Lane lane, Point truth) const {
 }
 
 void BestResponseAttack::candidates(Lane lane, Point truth, Stream& rng, std::vector<Point>& out) const {
-  for (int i = 0; i < options_.grid; ++i) {
-    for (int j = 0; j < options_.grid; ++j) out.push_back(grid_place(ball_, truth, options_.grid, i, j));
-  }
+  add_grid(ball_, truth, options_.grid, out);
   for (int i = 0; i < options_.random; ++i) out.push_back(ball_.draw(truth, rng));
   if (options_.steady) out.push_back(carried_over(lane, truth));
 }

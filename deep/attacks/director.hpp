@@ -57,6 +57,8 @@ class Director : public GridAttack {
   TensorFile save() const;
   void load(const TensorFile& file);
 
+  const ObservationBall& ball() const { return ball_; }
+
  protected:
   Director(const ObservationBall& ball, const DirectorOptions& options, long further_features, long choices);
 
@@ -70,7 +72,6 @@ class Director : public GridAttack {
   /// Zeros, one row for each lane.
   torch::Tensor blank_features(std::size_t lanes) const;
   long choices() const { return choices_; }
-  const ObservationBall& ball() const { return ball_; }
 
  private:
   std::vector<int> choose(const torch::Tensor& log_policy, std::span<const Lane> lanes,

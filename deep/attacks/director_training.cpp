@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <maximin/deep/attacks/simple_attacks.hpp>
 #include <maximin/deep/range_check.hpp>
 #include <maximin/theory/error.hpp>
 #include <maximin/theory/rollout_in_step.hpp>
@@ -22,7 +23,7 @@ class Play {
  public:
   Play(Director& director, GridAgent& agent, const ContinuousGridworld& world, const DirectorTraining& options,
        long stretch)
-      : director_(director), agent_(agent), world_(world), options_(options) {
+      : director_(director), bounded_(director, director.ball()), agent_(agent), world_(world), options_(options) {
     const auto n = static_cast<std::size_t>(options.lanes);
     agent.resize(options.lanes);
     director.resize(options.lanes);
@@ -82,7 +83,7 @@ class Play {
   void step(long tick) {
     std::vector<Point> shown(lanes_.size());
     std::vector<Action> actions(lanes_.size());
-    director_.perturb(lanes_, truths_, agent_, streams_, shown);
+    bounded_.perturb(lanes_, truths_, agent_, streams_, shown);
     agent_.act(lanes_, shown, streams_, actions);
     float* reward = rewards_[tick].data_ptr<float>();
     float* over = over_[tick].data_ptr<float>();
@@ -100,6 +101,7 @@ class Play {
   }
 
   Director& director_;
+  WithinBallInStep bounded_;
   GridAgent& agent_;
   const ContinuousGridworld& world_;
   const DirectorTraining& options_;
@@ -121,8 +123,9 @@ double evaluate(Director& director, GridAgent& agent, ContinuousGridworld world,
   episodes.episodes = options.evaluation_episodes;
   episodes.seed = options.seed ^ evaluation_seed_bit;
   episodes.lanes = options.lanes;
+  WithinBallInStep bounded(director, director.ball());
   double sum = 0;
-  for (const Episode& e : rollout_in_step(world, agent, director, episodes)) sum += e.total_reward;
+  for (const Episode& e : rollout_in_step(world, agent, bounded, episodes)) sum += e.total_reward;
   director.set_play(before);
   return sum / static_cast<double>(options.evaluation_episodes);
 }

@@ -39,27 +39,6 @@ GradientAttack::GradientAttack(std::shared_ptr<ActionValueModule> q, const Obser
   }
 }
 
-// What is differentiated.
-torch::Tensor GradientAttack::objective(const torch::Tensor& q_shown, const torch::Tensor& q_truth,
-                                        const torch::Tensor& best) const {
-  switch (options_.objective) {
-    case AttackObjective::value:
-      return (torch::softmax(q_shown, 1) * q_truth).sum(1);
-    case AttackObjective::min_best:
-      return torch::softmax(q_shown, 1).gather(1, best).squeeze(1);
-    case AttackObjective::cross_entropy:
-      break;
-  }
-  return torch::log_softmax(q_shown, 1).gather(1, best).squeeze(1);
-}
-
-// What visited points are compared by: the value objective by the action really provoked.
-torch::Tensor GradientAttack::hard_objective(const torch::Tensor& q_shown, const torch::Tensor& q_truth,
-                                             const torch::Tensor& best) const {
-  if (options_.objective != AttackObjective::value) return objective(q_shown, q_truth, best);
-  return q_truth.gather(1, q_shown.argmax(1, true)).squeeze(1);
-}
-
 torch::Tensor GradientAttack::starts(std::span<const Lane> lanes, std::span<const Point> truths,
                                      std::span<Stream> streams) const {
   std::vector<Point> drawn;
@@ -74,17 +53,17 @@ void GradientAttack::perturb(std::span<const Lane> lanes, std::span<const Point>
                              std::span<Stream> streams, std::span<Point> shown) {
   const torch::Device device = device_of(*q_);
   const BallBounds bounds(truths, ball_, device);
-  torch::Tensor q_truth, best;
+  AttackedStates attacked;
   {
     torch::NoGradGuard no_grad;
-    q_truth = q_->forward(to_tensor(truths).to(device));
-    best = q_truth.argmax(1, true);
+    attacked.q = q_->forward(to_tensor(truths).to(device));
+    attacked.best = attacked.q.argmax(1, true);
   }
   const auto n = static_cast<long>(lanes.size());
   torch::Tensor chosen = torch::zeros({n, 2}, device);
   torch::Tensor least = torch::full({n}, std::numeric_limits<float>::infinity(), device);
   const auto consider = [&](const torch::Tensor& at, const torch::Tensor& q_at) {
-    const torch::Tensor score = hard_objective(q_at, q_truth, best);
+    const torch::Tensor score = hard_objective(options_.objective, q_at, attacked);
     const torch::Tensor better = options_.keep_best ? score < least : torch::ones_like(score, torch::kBool);
     chosen = torch::where(better.unsqueeze(1), at, chosen);
     least = torch::where(better, score, least);
@@ -97,7 +76,8 @@ void GradientAttack::perturb(std::span<const Lane> lanes, std::span<const Point>
       const torch::Tensor q_at = q_->forward(at);
       if (options_.keep_best || i == options_.steps) consider(at.detach(), q_at.detach());
       if (i == options_.steps) break;
-      const torch::Tensor slope = torch::autograd::grad({objective(q_at, q_truth, best).sum()}, {at})[0];
+      const torch::Tensor objective = smooth_objective(options_.objective, q_at, attacked);
+      const torch::Tensor slope = torch::autograd::grad({objective.sum()}, {at})[0];
       at = at.detach() - step * slope.sign();
     }
   }

@@ -5,18 +5,11 @@
 #include <string_view>
 
 #include <maximin/deep/agent.hpp>
+#include <maximin/deep/attacks/attack_objective.hpp>
 #include <maximin/deep/q_network.hpp>
 #include <maximin/gridworld/observation_ball.hpp>
 
 namespace maximin::deep {
-
-/// What a gradient attack makes small, as a function of the shown state t when s is true; Q is the network attacked.
-enum class AttackObjective {
-  value,  ///< the value of the action it provokes, Q(s, pi(t)), by way of sum_a softmax(Q(t))_a Q(s,a) (the paper's
-          ///< PGD)
-  cross_entropy,  ///< the log-probability of the greedy action of s, hard labels (PGD of the authors' released code)
-  min_best,       ///< the softmax probability of the best action of s (the paper's MinBest)
-};
 
 struct GradientAttackOptions {
   AttackObjective objective = AttackObjective::value;
@@ -44,9 +37,6 @@ class GradientAttack final : public GridAttack {
                std::span<Stream> streams, std::span<Point> shown) override;
 
  private:
-  torch::Tensor objective(const torch::Tensor& q_shown, const torch::Tensor& q_truth, const torch::Tensor& best) const;
-  torch::Tensor hard_objective(const torch::Tensor& q_shown, const torch::Tensor& q_truth,
-                               const torch::Tensor& best) const;
   torch::Tensor starts(std::span<const Lane> lanes, std::span<const Point> truths, std::span<Stream> streams) const;
 
   std::shared_ptr<ActionValueModule> q_;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <span>
+#include <utility>
 
 #include <maximin/deep/agent.hpp>
 #include <maximin/gridworld/observation_ball.hpp>
@@ -31,6 +33,8 @@ class RandomAttack final : public GridAttack {
 class WithinBallInStep final : public WrappedAttack {
  public:
   WithinBallInStep(GridAttack& attack, const ObservationBall& ball) : WrappedAttack(attack), ball_(ball) {}
+  WithinBallInStep(std::shared_ptr<GridAttack> attack, const ObservationBall& ball)
+      : WrappedAttack(std::move(attack)), ball_(ball) {}
   void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                std::span<Stream> streams, std::span<Point> shown) override;
 

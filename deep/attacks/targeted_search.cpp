@@ -29,11 +29,7 @@ TargetedSearch::TargetedSearch(std::shared_ptr<ActionValueModule> q, const Obser
 torch::Tensor TargetedSearch::best_of_grid(std::span<const Point> truths, const torch::Tensor& targets) const {
   const long each = static_cast<long>(options_.grid) * options_.grid;
   std::vector<Point> places;
-  for (const Point& truth : truths) {
-    for (int i = 0; i < options_.grid; ++i) {
-      for (int j = 0; j < options_.grid; ++j) places.push_back(grid_place(ball_, truth, options_.grid, i, j));
-    }
-  }
+  for (const Point& truth : truths) add_grid(ball_, truth, options_.grid, places);
   torch::NoGradGuard no_grad;
   const torch::Tensor rows = to_tensor(places).to(targets.device());
   const torch::Tensor leads = lead(q_->forward(rows), targets.repeat_interleave(each, 0)).view({-1, each});

@@ -1,7 +1,12 @@
 #include <maximin/deep/attacks/through_defence_attack.hpp>
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include <maximin/deep/attacks/ball_places.hpp>
 #include <maximin/deep/tensors.hpp>
@@ -10,18 +15,19 @@
 namespace maximin::deep {
 namespace {
 
-/// The descents under way, one row for each lane and start, and the best place that each has seen.
-class Descents {
+/// Searches side by side, `each` of them for every lane, and the best place that each has seen.
+class Searches {
  public:
-  Descents(const BeliefAgent& agent, const ObservationBall& ball, std::vector<Lane> lanes, std::vector<Point> truths,
-           torch::Tensor judged, double unit)
+  Searches(const BeliefAgent& agent, const ObservationBall& ball, ActionValueModule& judge, double unit,
+           std::span<const Lane> lanes, std::span<const Point> truths, std::size_t each)
       : agent_(agent),
         ball_(ball),
-        bounds_(truths, ball),
-        lanes_(std::move(lanes)),
-        truths_(std::move(truths)),
-        judged_(std::move(judged)),
-        unit_(unit) {
+        unit_(unit),
+        each_(each),
+        lanes_(repeated(lanes, each)),
+        truths_(repeated(truths, each)),
+        bounds_(truths_, ball),
+        judged_(values_at(judge, truths_)) {
     const auto rows = static_cast<long>(lanes_.size());
     best_ = torch::zeros({rows, 2});
     hard_ = torch::full({rows}, std::numeric_limits<float>::infinity());
@@ -53,19 +59,42 @@ class Descents {
     return signs;
   }
 
-  const BallBounds& bounds() const { return bounds_; }
-  const torch::Tensor& best() const { return best_; }
-  const torch::Tensor& hard() const { return hard_; }
-  const torch::Tensor& soft() const { return soft_; }
+  torch::Tensor stepped(const torch::Tensor& at, double step, double probe) {
+    return bounds_.clamp(at - step * slope_sign(at, probe));
+  }
+
+  /// The `count` best places of every lane, the best first.
+  std::vector<Point> best_places(int count) const {
+    const float *hard = hard_.data_ptr<float>(), *soft = soft_.data_ptr<float>();
+    const std::vector<Point> best = to_points(best_);
+    std::vector<std::size_t> rows(each_);
+    std::vector<Point> out;
+    for (std::size_t first = 0; first < best.size(); first += each_) {
+      std::iota(rows.begin(), rows.end(), first);
+      std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+        return std::pair(hard[a], soft[a]) < std::pair(hard[b], soft[b]);
+      });
+      for (int i = 0; i < count; ++i) out.push_back(best[rows[static_cast<std::size_t>(i)]]);
+    }
+    return out;
+  }
 
  private:
+  template <class T>
+  static std::vector<T> repeated(std::span<const T> of, std::size_t each) {
+    std::vector<T> out;
+    for (const T& one : of) out.insert(out.end(), each, one);
+    return out;
+  }
+
   const BeliefAgent& agent_;
   const ObservationBall& ball_;
-  BallBounds bounds_;
-  std::vector<Lane> lanes_;
-  std::vector<Point> truths_;
-  torch::Tensor judged_, best_, hard_, soft_;
   double unit_;
+  std::size_t each_;
+  std::vector<Lane> lanes_;  ///< this and what follows: by row
+  std::vector<Point> truths_;
+  BallBounds bounds_;
+  torch::Tensor judged_, best_, hard_, soft_;
 };
 
 }  // namespace
@@ -73,9 +102,13 @@ class Descents {
 ThroughDefenceAttack::ThroughDefenceAttack(std::shared_ptr<ActionValueModule> judge, const ObservationBall& ball,
                                            const ThroughDefenceOptions& options)
     : judge_(std::move(judge)), ball_(ball), options_(options) {
-  if (options.steps < 0 || options.starts < 1 || !(options.step_share > 0) || !(options.probe_share > 0) ||
-      !(options.unit > 0)) {
-    throw InputError("through defence: steps below 0, or no starts, step or unit, expected e.g. 10 steps of 0.1");
+  if (options.steps < 0 || !(options.step_share > 0) || !(options.probe_share > 0) || !(options.unit > 0)) {
+    throw InputError("through defence: steps below 0, or no step or unit, expected e.g. 10 steps of 0.1");
+  }
+  const int looks = options.grid * options.grid + options.random;
+  if (options.grid < 0 || options.grid == 1 || options.random < 0 || options.starts < 1 || options.starts > looks) {
+    throw InputError(fmt::format("through defence: {} starts from {} first looks, expected 1 to as many as there are",
+                                 options.starts, looks));
   }
 }
 
@@ -84,36 +117,26 @@ void ThroughDefenceAttack::perturb(std::span<const Lane> lanes, std::span<const 
   const auto* defence = dynamic_cast<const BeliefAgent*>(&agent);
   if (defence == nullptr) throw InputError("through defence: an agent without belief, expected a BeliefAgent");
   torch::NoGradGuard no_grad;
-  // Row k * starts + i is start i of lane k.
-  std::vector<Lane> row_lanes;
-  std::vector<Point> row_truths, row_starts;
+  std::vector<Point> places;
   for (std::size_t k = 0; k < lanes.size(); ++k) {
-    for (int start = 0; start < options_.starts; ++start) {
-      row_lanes.push_back(lanes[k]);
-      row_truths.push_back(truths[k]);
-      row_starts.push_back(ball_.draw(truths[k], streams[static_cast<std::size_t>(lanes[k])]));
-    }
+    add_grid(ball_, truths[k], options_.grid, places);
+    Stream& rng = streams[static_cast<std::size_t>(lanes[k])];
+    for (int i = 0; i < options_.random; ++i) places.push_back(ball_.draw(truths[k], rng));
   }
-  const torch::Tensor judged = values_at(*judge_, row_truths);
-  torch::Tensor at = to_tensor(row_starts);
-  Descents descents(*defence, ball_, std::move(row_lanes), std::move(row_truths), judged, options_.unit);
+  const auto searches = [&](std::size_t each) {
+    return Searches(*defence, ball_, *judge_, options_.unit, lanes, truths, each);
+  };
+  Searches looks = searches(places.size() / lanes.size());
+  looks.look(to_tensor(places));
+  torch::Tensor at = to_tensor(looks.best_places(options_.starts));
+  Searches descents = searches(static_cast<std::size_t>(options_.starts));
   descents.look(at);
   for (int i = 0; i < options_.steps; ++i) {
-    const torch::Tensor sign = descents.slope_sign(at, options_.probe_share * ball_.eps());
-    at = descents.bounds().clamp(at - options_.step_share * ball_.eps() * sign);
+    at = descents.stepped(at, options_.step_share * ball_.eps(), options_.probe_share * ball_.eps());
   }
   descents.look(at);
-  const auto hard = descents.hard().accessor<float, 1>(), soft = descents.soft().accessor<float, 1>();
-  const std::vector<Point> places = to_points(descents.best());
-  const auto starts = static_cast<std::size_t>(options_.starts);
-  for (std::size_t k = 0; k < lanes.size(); ++k) {
-    std::size_t least = k * starts;
-    for (std::size_t row = least + 1; row < (k + 1) * starts; ++row) {
-      const auto r = static_cast<long>(row), l = static_cast<long>(least);
-      if (hard[r] < hard[l] || (hard[r] == hard[l] && soft[r] < soft[l])) least = row;
-    }
-    shown[k] = ball_.project(truths[k], places[least]);
-  }
+  const std::vector<Point> least = descents.best_places(1);
+  for (std::size_t k = 0; k < lanes.size(); ++k) shown[k] = ball_.project(truths[k], least[k]);
 }
 
 }  // namespace maximin::deep

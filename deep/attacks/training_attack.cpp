@@ -11,8 +11,10 @@
 #include <maximin/deep/attacks/simple_attacks.hpp>
 
 namespace maximin::deep {
-std::shared_ptr<GridAttack> training_attack(const std::string& name, const ObservationBall& ball,
-                                            const std::shared_ptr<ActionValueModule>& trained, const QNetwork& judge) {
+namespace {
+
+std::shared_ptr<GridAttack> unchecked(const std::string& name, const ObservationBall& ball,
+                                      const std::shared_ptr<ActionValueModule>& trained, const QNetwork& judge) {
   if (name == "none") return std::make_shared<NoAttack>();
   if (name == "random") return std::make_shared<RandomAttack>(ball);
   const auto gradient = [&](std::string_view which) {
@@ -27,6 +29,13 @@ std::shared_ptr<GridAttack> training_attack(const std::string& name, const Obser
   parts.push_back({gradient("min-best"), 0.1});
   parts.push_back({std::make_shared<BestResponseAttack>(frozen_copy(judge), ball, BestResponseOptions{2, 2}), 0.35});
   return std::make_shared<MixedAttack>(std::move(parts));
+}
+
+}  // namespace
+
+std::shared_ptr<GridAttack> training_attack(const std::string& name, const ObservationBall& ball,
+                                            const std::shared_ptr<ActionValueModule>& trained, const QNetwork& judge) {
+  return std::make_shared<WithinBallInStep>(unchecked(name, ball, trained, judge), ball);
 }
 
 }  // namespace maximin::deep

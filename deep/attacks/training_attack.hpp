@@ -13,7 +13,8 @@ namespace maximin::deep {
 /// min-best, or mixed.
 /// Mixed draws one for each episode: none, random, a corner of the ball kept all the time, PGD, MinBest, and sampled
 /// best response through the whole defence, so that no single attack is learned by heart. Best responses are judged by
-/// the values as they are when training begins. Throws InputError on another name.
+/// the values as they are when training begins. What it shows is checked to lie in the ball. Throws InputError on
+/// another name.
 std::shared_ptr<GridAttack> training_attack(const std::string& name, const ObservationBall& ball,
                                             const std::shared_ptr<ActionValueModule>& trained, const QNetwork& judge);
 

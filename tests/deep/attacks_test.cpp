@@ -14,12 +14,14 @@
 #include <maximin/deep/attacks/gradient_attack.hpp>
 #include <maximin/deep/attacks/mixed_attack.hpp>
 #include <maximin/deep/attacks/named_attack.hpp>
+#include <maximin/deep/attacks/network_search.hpp>
 #include <maximin/deep/attacks/offset_attack.hpp>
 #include <maximin/deep/attacks/pa_ad_attack.hpp>
 #include <maximin/deep/attacks/simple_attacks.hpp>
 #include <maximin/deep/attacks/targeted_search.hpp>
 #include <maximin/deep/attacks/through_defence_attack.hpp>
 #include <maximin/deep/belief_agent.hpp>
+#include <maximin/deep/evaluation.hpp>
 #include <maximin/deep/set_beliefs.hpp>
 #include <maximin/deep/tensors.hpp>
 #include <maximin/deep/trained_agent.hpp>
@@ -27,6 +29,7 @@
 
 #include <unistd.h>
 
+#include "lattice_values.hpp"
 #include "tiny_networks.hpp"
 
 namespace maximin::deep {
@@ -56,6 +59,9 @@ std::vector<Case> all_attacks(const QNetworkPtr& q, const ObservationBall& ball)
     options.keep_best = false;
     options.released_start = true;
     all.push_back({"gradient, as released", std::make_shared<GradientAttack>(q, ball, options)});
+  }
+  for (const char* name : {"pgd-search", "min-best-search"}) {
+    all.push_back({"search", std::make_shared<NetworkSearch>(q, ball, network_search_named(name))});
   }
   all.push_back({"best response", std::make_shared<BestResponseAttack>(q, ball, BestResponseOptions{})});
   all.push_back({"through defence", std::make_shared<ThroughDefenceAttack>(q, ball)});
@@ -251,8 +257,10 @@ TEST(Attacks, AreAsStrongInOneStepAsTheyClaim) {
     EXPECT_GE(pgd, least - slack);
     EXPECT_LE(best_response, least + 0.05 * (none - least));
     EXPECT_LE(best_response, pgd + slack);
-    EXPECT_LT(through, by_chance);
-    EXPECT_LE(through, least + 0.35 * (none - least));
+    // It begins with the very looks of the sampled best response.
+    EXPECT_LE(through, provoked(BestResponseAttack(q, ball, {3, 16})));
+    EXPECT_LT(through, provoked(ThroughDefenceAttack(q, ball, {.steps = 0, .grid = 0, .random = 4})));
+    EXPECT_LE(through, least + 0.1 * (none - least));
     // PGD knows the network, not the defence.
     if (agent == &greedy) {
       EXPECT_LT(pgd, by_chance);
@@ -260,7 +268,7 @@ TEST(Attacks, AreAsStrongInOneStepAsTheyClaim) {
   }
 }
 
-/// What a gradient attack makes small, at these observations of the truth.
+/// What an attack on a network makes small, at these observations of the truth.
 std::vector<double> objectives(AttackObjective objective, QNetwork& q, Point truth, const std::vector<Point>& shown) {
   torch::NoGradGuard no_grad;
   const torch::Tensor at = q.forward(to_tensor(shown)), here = q.forward(to_tensor(std::vector<Point>{truth}));
@@ -274,8 +282,8 @@ std::vector<double> objectives(AttackObjective objective, QNetwork& q, Point tru
   return all;
 }
 
-/// How far a gradient attack comes from what chance shows (0) to the least that a fine grid finds (1).
-double way_to_the_least(GradientAttack&& attack, AttackObjective objective, QNetwork& q, const ObservationBall& ball) {
+/// How far an attack on a network comes from what chance shows (0) to the least that a fine grid finds (1).
+double way_to_the_least(GridAttack&& attack, AttackObjective objective, QNetwork& q, const ObservationBall& ball) {
   const std::vector<Point> truths = places_in_the_open(60);
   BeliefAgent unused(small_network(1), std::make_shared<ObservedState>(), MeanAggregator{});
   RandomAttack random(ball);
@@ -323,6 +331,32 @@ TEST(Attacks, GradientsMakeTheirOwnObjectivesSmall) {
   GradientAttack start(q, ball, released);
   BeliefAgent unused(q, std::make_shared<ObservedState>(), MeanAggregator{});
   EXPECT_EQ(shown_by(start, unused, {{4.5, 6.5}}, 3)[0], grid_place(ball, {4.5, 6.5}, 2, 0, 0));
+}
+
+TEST(Attacks, SearchesFindWhatGradientsMiss) {
+  const ObservationBall ball(0.4);
+  const QNetworkPtr q = small_network(11);
+  for (const std::string name : {"pgd", "min-best"}) {
+    SCOPED_TRACE(name);
+    const NetworkSearchOptions options = network_search_named(name + "-search");
+    const GradientAttackOptions gradient = gradient_attack_named(name);
+    EXPECT_EQ(options.objective, gradient.objective);
+    const auto way = [&](GridAttack&& attack) {
+      return way_to_the_least(std::move(attack), options.objective, *q, ball);
+    };
+    const double by_search = way(NetworkSearch(q, ball, options));
+    EXPECT_GT(by_search, 0.9);
+    EXPECT_LT(by_search, 1.05);
+    // With no more looks than the gradient attack has, and none of them on a grid.
+    const double by_gradient = way(GradientAttack(q, ball, gradient));
+    EXPECT_GT(way(NetworkSearch(q, ball, {options.objective, 0, gradient.steps + 1})), by_gradient);
+    // One look is chance; another network's values lead elsewhere.
+    EXPECT_LT(std::abs(way(NetworkSearch(q, ball, {options.objective, 0, 1}))), 0.15);
+    EXPECT_LT(way(NetworkSearch(small_network(12), ball, options)), 0.5);
+  }
+  EXPECT_THROW(network_search_named("search"), InputError);
+  EXPECT_THROW(NetworkSearch(q, ball, {AttackObjective::value, 0, 0}), InputError);
+  EXPECT_THROW(NetworkSearch(q, ball, {AttackObjective::value, 1, 4}), InputError);
 }
 
 TEST(Attacks, ASteadyBestResponseShowsTheNearestToItsLastErrorAmongEquals) {
@@ -407,6 +441,7 @@ TEST(Attacks, BadOptionsAreNamed) {
   const QNetworkPtr q = small_network(1);
   EXPECT_THROW(TargetedSearch(q, ball, {.grid = 1}), InputError);
   EXPECT_THROW(ThroughDefenceAttack(q, ball, {.starts = 0}), InputError);
+  EXPECT_THROW(ThroughDefenceAttack(q, ball, {.grid = 0, .random = 3, .starts = 4}), InputError);
   EXPECT_THROW(AdaptiveDirector(q, ball, {.grid = 1}), InputError);
   PaAdOptions no_time;
   no_time.director.horizon = 0;
@@ -452,6 +487,45 @@ TEST(NamedAttack, ALearnedAttackBelongsToItsAgent) {
   setting.quick = false;
   EXPECT_THROW(make_attack(setting, target(agent)), InputError);
   std::filesystem::remove(setting.file);
+}
+
+/// Of three directors the one that leaves least; each is kept in a file of its own, the first of them `director`.
+TEST(NamedAttack, TheWorstOfThreeDirectorsIsOneOfThem) {
+  const auto values = std::make_shared<LatticeValues>();
+  const auto agent = [&] {
+    return std::make_unique<BeliefAgent>(values, std::make_shared<ObservedState>(), MeanAggregator{});
+  };
+  const AttackTarget target{values, values, "the lattice's values", agent};
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("maximin-directors-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  AttackSetting setting;
+  setting.eps = 0.5;
+  setting.quick = true;
+  const auto left = [&](const std::string& name, const std::string& file, std::uint64_t seed) {
+    setting.name = name;
+    setting.file = file.empty() ? std::filesystem::path() : folder / file;
+    setting.seed = seed;
+    const auto attack = make_attack(setting, target);
+    return evaluate_agent(*agent(), *attack, ObservationBall(0.5), 100, 9).returns;
+  };
+  const auto worst = left("directors", "d.attacker", 3);
+  std::vector<std::vector<double>> each;
+  for (const std::uint64_t k : {0, 1, 2}) {
+    const std::string file = "d-" + std::to_string(k + 1) + ".attacker";
+    ASSERT_TRUE(std::filesystem::exists(folder / file));
+    each.push_back(left("director", file, 3 + k * 2'000'000));
+  }
+  EXPECT_NE(each[0], each[1]);
+  EXPECT_NE(each[1], each[2]);
+  EXPECT_EQ(left("director", "", 3), each[0]);
+  EXPECT_TRUE(worst == each[0] || worst == each[1] || worst == each[2]);
+  // Three that are told to stop are none.
+  setting.name = "directors";
+  setting.file.clear();
+  setting.progress = [](double, double) { return false; };
+  EXPECT_EQ(make_attack(setting, target), nullptr);
+  std::filesystem::remove_all(folder);
 }
 
 /// Values in another unit attack as they are told: a softmax tells units apart, an argmax does not.

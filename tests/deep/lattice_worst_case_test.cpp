@@ -15,7 +15,9 @@
 #include <maximin/deep/attacks/adaptive_director.hpp>
 #include <maximin/deep/attacks/best_response_attack.hpp>
 #include <maximin/deep/attacks/gradient_attack.hpp>
+#include <maximin/deep/attacks/network_search.hpp>
 #include <maximin/deep/attacks/offset_attack.hpp>
+#include <maximin/deep/attacks/pa_ad_attack.hpp>
 #include <maximin/deep/attacks/simple_attacks.hpp>
 #include <maximin/deep/lattice_agent.hpp>
 #include <maximin/deep/lattice_world.hpp>
@@ -62,6 +64,8 @@ struct Attacker {
   long rounds;  ///< from each start: several of what draws
 };
 
+/// All kinds but the descent through the defence, which asks for an agent of networks. What a director is taught
+/// changes which of the same places it shows, and no director can show others.
 std::vector<Attacker> deep_attacks(const std::shared_ptr<ActionValueModule>& q,
                                    const std::shared_ptr<ActionValueModule>& judge, const ObservationBall& ball) {
   const auto gradient = [&](AttackObjective objective) {
@@ -70,6 +74,9 @@ std::vector<Attacker> deep_attacks(const std::shared_ptr<ActionValueModule>& q,
     options.steps = 5;
     options.step_share = 0.2;
     return std::make_shared<GradientAttack>(q, ball, options);
+  };
+  const auto search = [&](AttackObjective objective) {
+    return std::make_shared<NetworkSearch>(q, ball, NetworkSearchOptions{objective, 3, 0});
   };
   const auto director = [&](Director::Play play) {
     AdaptiveDirectorOptions options;
@@ -85,10 +92,14 @@ std::vector<Attacker> deep_attacks(const std::shared_ptr<ActionValueModule>& q,
       {"PGD", gradient(AttackObjective::value), 1},
       {"PGD, cross-entropy", gradient(AttackObjective::cross_entropy), 1},
       {"MinBest", gradient(AttackObjective::min_best), 1},
+      {"PGD's objective by search", search(AttackObjective::value), 1},
+      {"MinBest's objective by search", search(AttackObjective::min_best), 1},
+      {"PA-AD, untaught", std::make_shared<PaAdAttack>(q, ball), 1},
       {"director, untaught", director(Director::Play::sampled), 1},
       {"director, untaught and greedy", director(Director::Play::greedy), 1},
       {"best response, everywhere", std::make_shared<BestResponseAttack>(judge, ball, BestResponseOptions{3, 0}), 1},
-      {"best response", std::make_shared<BestResponseAttack>(judge, ball, BestResponseOptions{}), 1}};
+      {"best response", std::make_shared<BestResponseAttack>(judge, ball, BestResponseOptions{}), 1},
+      {"best response, steady", std::make_shared<BestResponseAttack>(judge, ball, BestResponseOptions{3, 0, true}), 1}};
 }
 
 /// Returns, by start: the least over all rounds. Totals, or discounted.
