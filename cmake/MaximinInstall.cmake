@@ -1,6 +1,6 @@
 # Installs every floor and exports it for find_package(Maximin [COMPONENTS floor...]).
 # A floor is a component with an export of its own, so that who asks for theory alone needs Eigen alone.
-# proofs_check/checker and deep/report are no floors: of them the programs alone are installed.
+# proofs_check/checker is no floor: of it the programs alone are installed.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Maximin)
 
@@ -10,8 +10,9 @@ set(MAXIMIN_COMPONENTS "")
 foreach(floor IN LISTS floors)
   install(TARGETS maximin_${floor} EXPORT Maximin_${floor})
   install(EXPORT Maximin_${floor} NAMESPACE maximin:: FILE Maximin_${floor}.cmake DESTINATION ${package_dir})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${floor}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/maximin/${floor}
-    FILES_MATCHING PATTERN "*.hpp" PATTERN checker EXCLUDE REGEX "deep/report$" EXCLUDE)
+  get_property(folder GLOBAL PROPERTY MAXIMIN_FOLDER_${floor})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/maximin/${folder}
+    FILES_MATCHING PATTERN "*.hpp" PATTERN checker EXCLUDE)
 
   get_property(links GLOBAL PROPERTY MAXIMIN_LINK_${floor})
   set(lower_floors "")

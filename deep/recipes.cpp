@@ -117,12 +117,14 @@ const std::vector<std::pair<std::string, Recipe>>& recipes() {
 
 constexpr double quick_share = 0.06;
 
-/// A training of so many frames in all, in stretches that are short in comparison.
+/// A training of so many frames in all, in stretches that are short in comparison, yet where there is time of whole
+/// episodes: a stretch begins with new ones, and returns are told of those that end.
 void shorten(TrainOptions& o, long frames) {
   const double share = static_cast<double>(frames) / static_cast<double>(o.frames);
   o.frames = frames;
   o.explore_frames = std::lround(static_cast<double>(o.explore_frames) * share);
-  o.stretch_frames = std::clamp<long>(frames / 12, o.lanes, o.stretch_frames);
+  const long whole_episodes = o.lanes * o.horizon, least = frames < whole_episodes ? o.lanes : whole_episodes;
+  o.stretch_frames = std::clamp(frames / 12, least, o.stretch_frames);
   o.warm_up = std::min(o.warm_up, frames / 60);
 }
 

@@ -52,7 +52,7 @@ build() {
 # How many compilers run at once: one per core, and 1 GiB of memory for each.
 jobs_that_fit() {
   local cores memory
-  cores=$(nproc)
+  cores=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)  # which they would mislead
   memory=$(awk '/MemAvailable/ {print int($2 / 1048576)}' /proc/meminfo 2>/dev/null || echo "$cores")
   [ "${memory:-0}" -lt 1 ] && memory=1
   echo $((memory < cores ? memory : cores))

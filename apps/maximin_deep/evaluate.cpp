@@ -145,12 +145,16 @@ void add_evaluate(CLI::App& app, Task& task) {
   sub->add_flag("--json", command->json, "Print the result as JSON");
   std::string listing = "Attacks:\n";
   for (const auto& a : deep::named_attacks()) {
-    listing += fmt::format("  {:20} {}{}\n", a.name, words_of(a.knows), a.learned ? ", learned" : "");
+    listing += fmt::format("  {:20} {}: {}{}\n", a.name, a.title, words_of(a.knows), a.learned ? ", learned" : "");
   }
-  sub->footer(listing +
-              "Examples:\n"
-              "  maximin_deep evaluate runs/bp-dqn-eps0.5-seed1.agent --attack none pgd min-best best-response\n"
-              "  maximin_deep evaluate runs/dqn-seed1.agent --belief exact --eps 0.5 --attack pgd");
+  sub->footer(
+      listing +
+      "Columns: +- a 95 percent interval; gold and bomb, episodes that ended there, where the others ran out of\n"
+      "time; truth in belief, the share of steps in which the agent held the true state possible; belief area;\n"
+      "empty, how often nothing that it held possible could have been shown; ms/step of agent, attack and world.\n"
+      "Examples:\n"
+      "  maximin_deep evaluate runs/bp-dqn-eps0.5-seed1.agent --attack none pgd min-best best-response\n"
+      "  maximin_deep evaluate runs/dqn-seed1.agent --belief exact --eps 0.5 --attack pgd");
   sub->callback([command, &task] { task = [command] { return evaluate(*command); }; });
 }
 

@@ -352,7 +352,7 @@ void add_table(CLI::App& app, Task& task) {
   sub->add_option("--jobs", command->jobs, "Trainings and evaluations side by side")
       ->check(whole_number(1, 256))
       ->capture_default_str();
-  sub->add_flag("--quick", command->quick, "About two minutes, to see it work");
+  sub->add_flag("--quick", command->quick, "In small, some two minutes: to see that it works");
   sub->add_option("--frames", command->frames, "So many frames of each training, in place of the recipes'")
       ->check(whole_number(1, 1'000'000'000));
   sub->footer(

@@ -130,7 +130,8 @@ void add_train(CLI::App& app, Task& task) {
   sub->add_option("--jobs", command->jobs, "Trainings side by side, one core each")
       ->check(whole_number(1, 256))
       ->capture_default_str();
-  sub->add_flag("--quick", command->quick, "About two minutes, to see it work");
+  sub->add_flag("--quick", command->quick,
+                "In small, at most some two minutes: to see that it works; what comes of it is no agent");
   sub->add_option("--frames", command->frames, "So many frames of each training, in place of the recipes'")
       ->check(whole_number(1, 1'000'000'000));
   sub->add_flag("--json", command->json, "Print the result as JSON");

@@ -93,8 +93,12 @@ Point belief_key(const MapFrame& f) {
 /// What the belief is, in the legend of a step: its area tells how much the agent knows.
 std::string belief_words(const MapFrame& f, const TraceBelief& belief) {
   std::string words = "held possible";
-  if (!belief.boxes.empty()) words += fmt::format(", area {:.2g}", BoxUnion(belief.boxes).area());
-  if (!belief.points.empty()) words += fmt::format(", {} particles", belief.points.size());
+  if (!belief.boxes.empty()) {
+    const double area = BoxUnion(belief.boxes).area();
+    words += area < 1e-6 ? ", one place" : fmt::format(", area {:.2g}", area);
+  }
+  if (belief.points.size() == 1) words += ", one place";
+  if (belief.points.size() > 1) words += fmt::format(", {} particles", belief.points.size());
   return svg_text(belief_key(f).x + 26, belief_key(f).y, words);
 }
 
@@ -113,14 +117,14 @@ std::string step_group(const MapFrame& f, const EpisodeTrace& trace, const Anima
   return svg + "</g>\n";
 }
 
-std::string end_group(const MapFrame& f, const EpisodeTrace& trace, const Clock& clock) {
+std::string end_group(const MapFrame& f, const EpisodeTrace& trace, const Clock& clock, bool belief) {
   const gridworld::Cell cell = gridworld::cell(trace.end);
   const char* what = !trace.terminal                 ? "time is up"
                      : cell == gridworld::Cell::gold ? "reached the gold"
                      : cell == gridworld::Cell::bomb ? "hit the bomb"
                                                      : "over";
-  return fmt::format("<g visibility=\"hidden\">{}\n{}</g>\n", clock.only_in(trace.steps.size()),
-                     step_words(f, trace.steps.size(), what, trace.total_reward()));
+  return fmt::format("<g visibility=\"hidden\">{}\n{}{}</g>\n", clock.only_in(trace.steps.size()),
+                     step_words(f, trace.steps.size(), what, trace.total_reward()), belief ? belief_words(f, {}) : "");
 }
 
 /// The path, which grows: a dash as long as what has been walked.
@@ -207,7 +211,7 @@ std::string animated_svg(const EpisodeTrace& trace, const AnimationOptions& o) {
       svg_number(width), svg_number(height), report::escape(title), report::escape(trace.outcome()));
   const double room = svg_width(title, 18);
   svg += svg_text(f.left, 26, title, "title",
-                  room > f.extent ? fmt::format("textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"", f.extent) : "");
+                  room > f.extent ? fmt::format("style=\"font-size:{}px\"", svg_number(18 * f.extent / room)) : "");
   svg += svg_map(f);
   svg += growing_path(f, places, clock);
   double total = 0;
@@ -215,7 +219,8 @@ std::string animated_svg(const EpisodeTrace& trace, const AnimationOptions& o) {
     total += trace.steps[k].reward;
     svg += step_group(f, trace, o, clock, k, places[k + 1], total);
   }
-  svg += end_group(f, trace, clock) + moving_truth(f, places, clock) + time_bar(f, clock) + legend(f, trace, belief);
+  svg += end_group(f, trace, clock, belief) + moving_truth(f, places, clock) + time_bar(f, clock) +
+         legend(f, trace, belief);
   return standalone_svg(svg + "</svg>\n");
 }
 
