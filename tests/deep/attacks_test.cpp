@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -502,12 +503,13 @@ TEST(NamedAttack, TheWorstOfThreeDirectorsIsOneOfThem) {
   AttackSetting setting;
   setting.eps = 0.5;
   setting.quick = true;
+  constexpr std::uint64_t trial_seed = 3 ^ (std::uint64_t{1} << 62U);  // of the episodes that choose
   const auto left = [&](const std::string& name, const std::string& file, std::uint64_t seed) {
     setting.name = name;
     setting.file = file.empty() ? std::filesystem::path() : folder / file;
     setting.seed = seed;
     const auto attack = make_attack(setting, target);
-    return evaluate_agent(*agent(), *attack, ObservationBall(0.5), 100, 9).returns;
+    return evaluate_agent(*agent(), *attack, ObservationBall(0.5), 32, trial_seed).returns;
   };
   const auto worst = left("directors", "d.attacker", 3);
   std::vector<std::vector<double>> each;
@@ -519,7 +521,10 @@ TEST(NamedAttack, TheWorstOfThreeDirectorsIsOneOfThem) {
   EXPECT_NE(each[0], each[1]);
   EXPECT_NE(each[1], each[2]);
   EXPECT_EQ(left("director", "", 3), each[0]);
-  EXPECT_TRUE(worst == each[0] || worst == each[1] || worst == each[2]);
+  const auto total = [](const auto& a, const auto& b) {
+    return std::accumulate(a.begin(), a.end(), 0.0) < std::accumulate(b.begin(), b.end(), 0.0);
+  };
+  EXPECT_EQ(worst, *std::min_element(each.begin(), each.end(), total));
   // Three that are told to stop are none.
   setting.name = "directors";
   setting.file.clear();
