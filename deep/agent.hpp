@@ -63,6 +63,8 @@ class GridAttack {
 
   virtual void resize(Lane) {}
   virtual void forget(Lane) {}
+  /// Fills shown[k], what the agent will see in lane lanes[k] where truths[k] is true; draws from streams[lanes[k]].
+  /// It must be what ObservationBall::project gives back: within eps, inside the world, on the grid of the quantum.
   virtual void perturb(std::span<const Lane> lanes, std::span<const Point> truths, const GridAgent& agent,
                        std::span<Stream> streams, std::span<Point> shown) = 0;
 };

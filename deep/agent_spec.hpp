@@ -86,6 +86,8 @@ const std::vector<std::string>& belief_names();
 
 /// Kinds that `recipe` knows.
 const std::vector<std::string>& agent_kinds();
+/// In a few words what an agent of this kind is; empty where there is no such kind.
+std::string what_is(std::string_view kind);
 
 /// How much of a recipe's training to do. Where a flag is enough, `true` is the quick one.
 struct Effort {

@@ -15,10 +15,10 @@
 
 namespace maximin::deep {
 
-/// Which belief the target of s_{t+1} is taken over (paper versus released code, difference 2).
+/// Which belief the target of s_{t+1} is taken over.
 enum class BootstrapBelief {
   next,     ///< M_{t+1}: what is believed when s_{t+1} is true
-  current,  ///< M_t, as Algorithm 4 prints it
+  current,  ///< M_t, as Algorithm 4 prints it and the released code has it
 };
 
 /// How a network is trained. Frames are steps of one environment; a tick is one step of every lane.

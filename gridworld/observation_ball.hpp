@@ -24,7 +24,7 @@ class ObservationBall {
 
   double eps() const { return eps_; }
 
-  /// Whether `shown` may be shown when `truth` is true.
+  /// Whether `shown` may be shown when `truth` is true: within eps and the world, on the grid of the quantum.
   bool contains(Point truth, Point shown) const { return within(truth.x, shown.x) && within(truth.y, shown.y); }
 
   /// The nearest observation that may be shown. Throws std::invalid_argument when `wanted` is not finite.
@@ -44,6 +44,11 @@ class ObservationBall {
   /// The corners of what may be shown when `truth` is true: low and high on each axis.
   double low(double truth) const { return std::max(truth - eps_, 0.0); }
   double high(double truth) const { return std::min(truth + eps_, static_cast<double>(gridworld::side)); }
+
+  /// Whether all that is wrong with `shown` is that it lies between points of the grid.
+  bool between_grid(Point truth, Point shown) const {
+    return !contains(truth, shown) && contains(truth, {gridworld::round_down(shown.x), gridworld::round_down(shown.y)});
+  }
 
  private:
   static bool on_grid(double v) { return gridworld::round_down(v) == v; }

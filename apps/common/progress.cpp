@@ -54,18 +54,22 @@ void Progress::draw(const std::string& note, Clock::time_point now) {
 }
 
 StageProgress::StageProgress(std::string title, bool quiet)
-    : title_(std::move(title)), stage_("begins"), start_(std::chrono::steady_clock::now()) {
-  if (quiet || !stderr_is_terminal()) return;
+    : title_(std::move(title)),
+      stage_("begins"),
+      on_terminal_(stderr_is_terminal()),
+      start_(std::chrono::steady_clock::now()) {
+  if (quiet) return;
   drawing_.emplace([this](const std::stop_token& stop) {
+    const std::chrono::milliseconds pause = on_terminal_ ? std::chrono::milliseconds(500) : std::chrono::minutes(1);
     std::unique_lock lock(mutex_);
-    while (!wake_.wait_for(lock, stop, std::chrono::milliseconds(500), [&] { return stop.stop_requested(); })) draw();
+    while (!wake_.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) draw();
   });
 }
 
 StageProgress::~StageProgress() {
   if (!drawing_) return;
   drawing_.reset();  // joined
-  fmt::print(stderr, "\r\033[K");
+  if (on_terminal_) fmt::print(stderr, "\r\033[K");
 }
 
 void StageProgress::stage(std::string text) {
@@ -80,7 +84,8 @@ void StageProgress::stage(const char* text, long n) {
 
 void StageProgress::draw() {
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  fmt::print(stderr, "\r\033[K{}: {}, {} so far", title_, stage_, seconds(elapsed));
+  fmt::print(stderr, "{}{}: {}, {} so far{}", on_terminal_ ? "\r\033[K" : "", title_, stage_, seconds(elapsed),
+             on_terminal_ ? "" : "\n");
   std::fflush(stderr);
 }
 

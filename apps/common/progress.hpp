@@ -38,8 +38,8 @@ class Progress {
   Clock::time_point drawn_;
 };
 
-/// What a long piece of work is doing, and for how long, on one line of standard error, drawn only when that is a
-/// terminal. A thread of its own redraws it, so that the time goes on while the work is silent.
+/// What a long piece of work is doing, and for how long, on one line of standard error; where that is no terminal, on
+/// a line of its own every minute. A thread of its own draws it, so that the time goes on while the work is silent.
 ///
 ///     StageProgress progress("certify");
 ///     progress.stage("round 17");      // certify: round 17, 42 s so far
@@ -62,10 +62,11 @@ class StageProgress {
 
   std::string title_;
   std::string stage_;
+  bool on_terminal_;
   std::chrono::steady_clock::time_point start_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::optional<std::jthread> drawing_;  ///< none where nothing is drawn
+  std::optional<std::jthread> drawing_;  ///< none where nothing is said
 };
 
 }  // namespace maximin::apps

@@ -48,6 +48,13 @@ const char* words_of(deep::Knowledge knowledge) {
   return "knows the whole defence";
 }
 
+/// "exact, mean, 2 % random"; a vanilla agent, "what it sees".
+std::string acts_by(const deep::Acting& acting) {
+  std::string text = acting.belief == "observed" ? "what it sees" : acting.belief + ", " + acting.aggregator;
+  if (acting.random_actions > 0) text += fmt::format(", {:g} % random", 100 * acting.random_actions);
+  return text;
+}
+
 /// An attacker's file is of one attack on one agent.
 void expect_one_attacker(const EvaluateCommand& command) {
   if (command.options.attacker.empty()) return;
@@ -63,7 +70,10 @@ int evaluate(const EvaluateCommand& command) {
   note_if_quick(command.options);
   std::optional<StageProgress> line("evaluate");
   Table table;
-  table.column("agent", Align::left).column("attack", Align::left).column("eps", Align::point);
+  table.column("agent", Align::left)
+      .column("acts by", Align::left)
+      .column("attack", Align::left)
+      .column("eps", Align::point);
   table.column("return", Align::point)
       .column("+-", Align::point)
       .column("gold")
@@ -87,10 +97,13 @@ int evaluate(const EvaluateCommand& command) {
       const deep::Estimate estimate = deep::estimate(run);
       const double half = estimate.shown() ? estimate.shown()->half_width : std::nan("");
       const std::string name = match.trained->spec.name();
-      table.row({name, attack, fmt::format("{:g}", match.eps), fmt::format("{:.1f}", estimate.mean),
-                 fmt::format("{:.1f}", half), std::to_string(e.gold), std::to_string(e.bomb),
-                 fmt::format("{:.1f} %", 100 * e.truth_in_belief), fmt::format("{:.3f}", e.belief_size),
-                 std::to_string(e.empty_intersections), fmt::format("{:.3f}", 1000 * e.seconds / double(e.steps))});
+      const bool believes = match.acting.belief != "observed";
+      table.row({name, acts_by(match.acting), attack, fmt::format("{:g}", match.eps),
+                 fmt::format("{:.1f}", estimate.mean), fmt::format("{:.1f}", half), std::to_string(e.gold),
+                 std::to_string(e.bomb), believes ? fmt::format("{:.1f} %", 100 * e.truth_in_belief) : "-",
+                 believes ? fmt::format("{:.3f}", e.belief_size) : "-",
+                 believes ? std::to_string(e.empty_intersections) : "-",
+                 fmt::format("{:.3f}", 1000 * e.seconds / double(e.steps))});
       if (!match.judge.empty()) judges.insert(match.judge);
       all.push_back({{"agent", name},
                      {"belief", match.acting.belief},

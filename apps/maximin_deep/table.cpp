@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 #include <maximin/apps/common/interrupt.hpp>
 #include <maximin/apps/common/option_checks.hpp>
 #include <maximin/apps/common/program.hpp>
+#include <maximin/apps/common/table.hpp>
 #include <maximin/apps/maximin_deep/commands.hpp>
 #include <maximin/apps/maximin_deep/table_plan.hpp>
 #include <maximin/apps/maximin_deep/workers.hpp>
@@ -40,14 +42,20 @@ struct TableCommand {
   std::string kind;
   fs::path folder = "runs";
   fs::path output = "results";
-  int seeds = 3;
+  int seeds = 0;                            ///< unless given: 3; 1 where it is quick
   std::optional<std::uint64_t> first_seed;  ///< unless given: 1 for the table, 101 for the choice of an aggregator
-  long episodes = 100;
-  std::vector<std::string> only, attacks;  ///< what is left in; empty: all
-  int jobs = 1;
+  long episodes = 0;                        ///< unless given: 100; 5 where it is quick
+  std::vector<std::string> only, attacks;   ///< what is left in; empty: all
+  int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool quick = false;
   long frames = 0;  ///< of each training; 0: what the recipes say
 
+  /// What was not given.
+  void complete() {
+    if (seeds == 0) seeds = quick ? 1 : 3;
+    if (episodes == 0) episodes = quick ? 5 : 100;
+    if (quick && frames == 0) frames = 2000;
+  }
   deep::Effort effort() const { return {quick, frames}; }
   std::uint64_t seed(int k) const {
     return first_seed.value_or(kind == "aggregators" ? 101 : 1) + static_cast<std::uint64_t>(k);
@@ -216,6 +224,10 @@ class TableMaker {
     return controls_.emplace(eps, HullControl(ObservationBall(eps), eps < 0.25 ? 10 : 3)).first->second;
   }
 
+  fs::path attacker_file(const Ready& ready, const PlannedCell& cell) const {
+    return command_.folder / fmt::format("{}-{}-eps{:g}.attacker", ready.name, cell.attack, cell.attack_eps);
+  }
+
   struct Match {
     std::unique_ptr<deep::GridAgent> agent;
     std::shared_ptr<deep::GridAttack> attack;  ///< empty where its training was interrupted
@@ -230,7 +242,7 @@ class TableMaker {
     setting.eps = cell.attack_eps;
     setting.seed = seed;
     setting.quick = command_.quick;
-    setting.file = command_.folder / fmt::format("{}-{}-eps{:g}.attacker", ready.name, cell.attack, cell.attack_eps);
+    setting.file = attacker_file(ready, cell);
     setting.progress = [this, &cell](double share, double) {
       line_.say(fmt::format("{} / {} {:g}: learns, {:.0f} %", cell.cell.agent, cell.cell.attack, cell.attack_eps,
                             100 * share));
@@ -271,14 +283,21 @@ class TableMaker {
     return out;
   }
 
+  /// Whether its attack is there to play: no picture is worth the minutes that a lost one takes to learn anew.
+  bool can_play(const PlannedCell& cell) {
+    return !deep::attack_named(cell.attack).learned ||
+           fs::exists(attacker_file(ready_to_act(cell, command_.seed(0), nullptr), cell));
+  }
+
   /// One episode of each of a few cells at the larger radius.
   std::vector<deep::EpisodeTrace> traces() {
+    const std::set<std::string> kinds{"dqn", "bp-dqn", "bp-dqn-printed", "sure"};
+    const std::set<std::string> attacks{"pgd", "best-response", "director"};
     std::vector<deep::EpisodeTrace> out;
     for (const PlannedCell& cell : plan_) {
-      const bool shown =
-          (cell.kind == "bp-dqn" || cell.kind == "dqn" || cell.kind == "bp-dqn-printed" || cell.kind == "sure") &&
-          cell.change.belief.empty() && cell.attack_eps > 0.3 && out.size() < 12 && cell.block != "ablation";
-      if (!shown) continue;
+      const bool shown = kinds.contains(cell.kind) && attacks.contains(cell.attack) && cell.change.belief.empty() &&
+                         cell.attack_eps > 0.3 && cell.block != "ablation";
+      if (!shown || !can_play(cell)) continue;
       const Match match = prepare(cell, command_.seed(0));
       if (!match.attack) continue;
       deep::EpisodeTrace trace = deep::trace_episode(*match.agent, *match.attack, ObservationBall(cell.attack_eps),
@@ -296,7 +315,25 @@ class TableMaker {
     const fs::path base = command_.output / command_.kind;
     write_file(base.string() + ".md", deep::markdown(table), Overwrite::replace);
     write_file(base.string() + ".html", deep::results_page(table, curves(), traces()), Overwrite::replace);
-    print(deep::markdown(table));
+    print(overview(table).text());
+    print(fmt::format("All of it: {0}.html to look at, {0}.md to read, {0}.json for programs.\n", base.string()));
+  }
+
+  /// What each agent gets at best and at worst, and the targets.
+  static Table overview(const deep::ResultTable& table) {
+    Table out;
+    out.column("agent", Align::left).column("attack", Align::left).column("return", Align::left);
+    out.column("target", Align::left);
+    for (const deep::ResultBlock& block : table.blocks) {
+      for (const deep::ResultCell& cell : block.cells) {
+        if (cell.eps > 0 && !cell.target && !block.derived) continue;
+        const std::string by = cell.note.empty() ? "" : " (" + cell.note + ")";
+        const std::string target =
+            cell.target ? fmt::format("{:g}: {}", cell.target->value, deep::verdict_word(deep::verdict(cell))) : "";
+        out.row({cell.agent, deep::column_title({cell.attack, cell.eps}) + by, deep::cell_text(cell), target});
+      }
+    }
+    return out;
   }
 
   TableCommand command_;
@@ -320,9 +357,11 @@ int make_table(const TableCommand& command) {
   };
   TableMaker maker(command, whole, [&](const PlannedCell& c) {
     const bool whole_agent = c.filter_of.empty() || listed(command.only, c.filter_of);
+    if (command.quick && !is_in_quick_table(c)) return false;
     return listed(command.only, c.kind) && listed(command.attacks, c.attack) && whole_agent;
   });
-  if (command.quick) note("--quick: everything in small, to see that it works; the numbers mean nothing");
+  if (command.quick)
+    note("--quick: everything in small and at the larger radius alone, to see that it works; the numbers mean nothing");
   make_folder(command.folder);
   make_folder(command.output);
   return maker.run();
@@ -340,12 +379,12 @@ void add_table(CLI::App& app, Task& task) {
   sub->add_option("--folder", command->folder, "Trained agents and attackers; what is missing is trained")
       ->capture_default_str();
   sub->add_option("--output", command->output, "Folder for the table")->capture_default_str();
-  sub->add_option("--seeds", command->seeds, "Training seeds")->check(whole_number(1, 1000))->capture_default_str();
+  sub->add_option("--seeds", command->seeds, "Training seeds: 3 unless given, 1 if quick")
+      ->check(whole_number(1, 1000));
   sub->add_option("--first-seed", command->first_seed, "The first of them; 1, or 101 for aggregators")
       ->check(seed_number());
-  sub->add_option("--episodes", command->episodes, "Episodes of each cell and seed")
-      ->check(whole_number(2, 1'000'000))
-      ->capture_default_str();
+  sub->add_option("--episodes", command->episodes, "Episodes of each cell and seed: 100 unless given, 5 if quick")
+      ->check(whole_number(2, 1'000'000));
   sub->add_option("--only", command->only, "Agents to leave in, e.g. dqn bp-dqn")->check(one_of(kinds_in_tables()));
   sub->add_option("--attacks", command->attacks, "Attacks to leave in, e.g. none pgd")
       ->check(one_of(deep::attack_names()));
@@ -358,9 +397,12 @@ void add_table(CLI::App& app, Task& task) {
   sub->footer(
       "A table that was cut goes on where it stopped.\n"
       "Examples:\n"
-      "  maximin_deep table gridworld --quick --seeds 1 --output /tmp/quick --folder /tmp/quick/agents\n"
-      "  maximin_deep table gridworld --jobs 4 --folder results/gridworld/agents --output results/gridworld");
-  sub->callback([command, &task] { task = [command] { return make_table(*command); }; });
+      "  maximin_deep table gridworld --quick --output /tmp/quick --folder /tmp/quick/agents\n"
+      "  maximin_deep table gridworld --folder results/gridworld/agents --output results/gridworld");
+  sub->callback([command, &task] {
+    command->complete();
+    task = [command] { return make_table(*command); };
+  });
 }
 
 }  // namespace maximin::apps

@@ -32,6 +32,9 @@ deep::AgentSpec spec_of(const PlannedCell& cell, std::uint64_t seed, const deep:
 std::vector<PlannedCell> gridworld_plan();
 std::vector<PlannedCell> aggregators_plan();
 
+/// Whether a quick table has the cell: those of the larger radius, which show as much as both.
+bool is_in_quick_table(const PlannedCell& cell);
+
 /// What stands above a block: how its agents were trained, what its attacks know.
 std::string block_note(const std::string& block, const deep::Effort& effort);
 

@@ -85,7 +85,7 @@ int train(const TrainCommand& command) {
     return ExitCode::success;
   }
   const torch::Device device = device_named(command.device);
-  if (command.quick) note("--quick: a training of seconds, which shows that everything works and no more");
+  if (command.quick) note("--quick: a training of seconds, which shows that it works; what comes of it is no result");
   const std::atomic<bool>& stop = stop_on_interrupt();
   WorkLine line("train");
   const auto trained = train_side_by_side(specs, command.folder, device, command.effort(), command.jobs, line, stop);
@@ -115,7 +115,7 @@ int train(const TrainCommand& command) {
 void add_train(CLI::App& app, Task& task) {
   auto command = std::make_shared<TrainCommand>();
   CLI::App* sub = app.add_subcommand("train", "Train agents; what is there already is taken, what was cut goes on");
-  sub->add_option("AGENT", command->kinds, "Which: dqn, bp-dqn, ...")->required()->check(one_of(deep::agent_kinds()));
+  sub->add_option("AGENT", command->kinds, "Which, of those below")->required()->check(one_of(deep::agent_kinds()));
   sub->add_option("--eps", command->eps, "Radius of the ball to withstand")
       ->check(real_number({.low = 0, .high = 5}))
       ->capture_default_str();
@@ -135,11 +135,13 @@ void add_train(CLI::App& app, Task& task) {
   sub->add_option("--frames", command->frames, "So many frames of each training, in place of the recipes'")
       ->check(whole_number(1, 1'000'000'000));
   sub->add_flag("--json", command->json, "Print the result as JSON");
-  sub->footer(
-      "Examples:\n"
-      "  maximin_deep train dqn --quick\n"
-      "  maximin_deep train bp-dqn --eps 0.5 --seeds 3 --jobs 2\n"
-      "  maximin_deep train bp-dqn --print-config > mine.json      then: --config mine.json");
+  std::string listing = "Agents:\n";
+  for (const std::string& kind : deep::agent_kinds()) listing += fmt::format("  {:16} {}\n", kind, deep::what_is(kind));
+  sub->footer(listing +
+              "Examples:\n"
+              "  maximin_deep train dqn --quick\n"
+              "  maximin_deep train bp-dqn --eps 0.5 --seeds 3 --jobs 2\n"
+              "  maximin_deep train bp-dqn --print-config > mine.json      then: --config mine.json");
   sub->callback([command, sub, &task] {
     for (const auto& [option, field] : {std::pair{"--eps", "/eps"}, std::pair{"--seed", "/training/seed"},
                                         std::pair{"--frames", "/training/frames"}}) {

@@ -45,6 +45,9 @@ void expect_files_apart(const WatchCommand& command) {
 
 int watch(const WatchCommand& command) {
   expect_files_apart(command);
+  if (command.output.extension() != ".svg") {
+    throw InputError(fmt::format("--output: {}, expected a name that ends in .svg", command.output.string()));
+  }
   // Before the work: an episode may take minutes where an attack has to learn first.
   for (const std::filesystem::path& file : {command.output, command.trace}) {
     if (command.force || file.empty() || !std::filesystem::exists(file)) continue;

@@ -58,9 +58,9 @@ bool learn(Director& director, GridAgent& victim, const AttackSetting& setting, 
   DirectorTraining training;
   training.seed = setting.seed;
   if (setting.quick) {
-    training.frames = 10'000;
-    training.stretch_frames = 5'000;
-    training.evaluation_episodes = 32;
+    training.frames = training.stretch_frames = 1'000;
+    training.lanes = 32;
+    training.evaluation_episodes = 4;
   }
   if (!setting.file.empty() && std::filesystem::exists(setting.file)) {
     try {
@@ -78,7 +78,7 @@ bool learn(Director& director, GridAgent& victim, const AttackSetting& setting, 
   expect_folder_of(setting.file);
   bool stopped = false;
   train_director(director, victim, ContinuousGridworld(target.world), training, [&](const DirectorPoint& point) {
-    const double share = static_cast<double>(point.frames) / static_cast<double>(training.frames);
+    const double share = std::min(1.0, static_cast<double>(point.frames) / static_cast<double>(training.frames));
     stopped = setting.progress && !setting.progress(share, std::min(point.sampled_return, point.greedy_return));
     return !stopped;
   });
@@ -116,7 +116,7 @@ double left_by(GridAttack& attack, const AttackSetting& setting, const AttackTar
   constexpr std::uint64_t trial_seed_bit = std::uint64_t{1} << 62U;
   const std::unique_ptr<GridAgent> agent = target.twin();
   const std::vector<double> returns =
-      evaluate_agent(*agent, attack, ObservationBall(setting.eps), setting.quick ? 32 : 200,
+      evaluate_agent(*agent, attack, ObservationBall(setting.eps), setting.quick ? 16 : 200,
                      setting.seed ^ trial_seed_bit, target.world)
           .returns;
   return std::accumulate(returns.begin(), returns.end(), 0.0) / static_cast<double>(returns.size());

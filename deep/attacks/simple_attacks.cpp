@@ -24,8 +24,11 @@ void WithinBallInStep::perturb(std::span<const Lane> lanes, std::span<const Poin
   attack().perturb(lanes, truths, agent, streams, shown);
   for (std::size_t k = 0; k < lanes.size(); ++k) {
     if (ball_.contains(truths[k], shown[k])) continue;
-    throw std::logic_error(fmt::format("attack: showed ({}, {}) when ({}, {}) was true, which is outside its ball",
-                                       shown[k].x, shown[k].y, truths[k].x, truths[k].y));
+    const char* what = ball_.between_grid(truths[k], shown[k])
+                           ? "no multiple of the quantum 2^-40, expected what ObservationBall::project makes of it"
+                           : "outside its ball";
+    throw std::logic_error(fmt::format("attack: showed ({}, {}) when ({}, {}) was true, which is {}", shown[k].x,
+                                       shown[k].y, truths[k].x, truths[k].y, what));
   }
 }
 

@@ -6,7 +6,7 @@
 
 namespace maximin::deep {
 
-/// In which order the target takes the best action and the worst state (paper versus released code, difference 1).
+/// In which order the target takes the best action and the worst state.
 enum class TargetOrder {
   max_of_aggregate,  ///< max_a Aggregate_{m in M} Q'(m,a), the paper's maximin
   aggregate_of_max,  ///< Aggregate_{m in M} max_a Q'(m,a), the released Gridworld code

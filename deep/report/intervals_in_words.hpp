@@ -10,6 +10,8 @@ namespace maximin::deep {
 
 /// A return for a person: "163", "−53.2", "0.012".
 std::string return_text(double value);
+/// A number that is given and not measured, in full: "171.9".
+std::string exact_text(double value);
 
 /// The half-width, or "not estimable".
 std::string interval_text(const std::optional<ConfidenceInterval>& interval);

@@ -59,6 +59,7 @@ struct ResultBlock {
   std::string name;
   std::string note;
   std::vector<ResultCell> cells;
+  bool derived = false;  ///< its runs are those of other cells, and not to be counted twice; in no file
 
   /// A column: an attack and its radius.
   struct Column {

@@ -53,14 +53,14 @@ Tally tally_of(const ResultTable& table) {
   Tally t;
   for (const ResultBlock& b : table.blocks) {
     for (const ResultCell& c : b.cells) {
-      ++t.cells;
+      t.cells += b.derived ? 0 : 1;
       t.targets += c.target ? 1 : 0;
       if (c.runs.empty()) continue;
       const Estimate e = estimate(c.runs);
       t.fewest_seeds = t.done == 0 ? c.runs.size() : std::min(t.fewest_seeds, c.runs.size());
       t.most_seeds = std::max(t.most_seeds, c.runs.size());
-      ++t.done;
-      t.episodes += e.episodes;
+      t.done += b.derived ? 0 : 1;
+      t.episodes += b.derived ? 0 : e.episodes;
       t.largest = std::max(t.largest, std::abs(e.mean));
       const TargetVerdict v = verdict(c);
       if (v == TargetVerdict::none) continue;
@@ -144,7 +144,7 @@ std::string data_cell(const ResultCell* c, double largest) {
     const bool miss = v == TargetVerdict::missed || v == TargetVerdict::missed_nearly;
     html += fmt::format("<span class=\"figure{}\">{}{} {}</span>", miss ? " miss" : "",
                         word.empty() ? "target" : word + ":", c->target->sense == Target::Sense::at_least ? " ≥" : " ≤",
-                        return_text(c->target->value));
+                        exact_text(c->target->value));
   }
   if (!c->note.empty()) html += fmt::format("<span>{}</span>", escape(c->note));
   return html + "</td>";

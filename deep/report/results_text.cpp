@@ -33,7 +33,7 @@ std::string plain(std::string_view text) {
 std::string target_text(const ResultCell& c) {
   if (!c.target) return "";
   const std::string word = verdict_word(verdict(c));
-  const std::string bound = (c.target->sense == Target::Sense::at_least ? "≥ " : "≤ ") + return_text(c.target->value);
+  const std::string bound = (c.target->sense == Target::Sense::at_least ? "≥ " : "≤ ") + exact_text(c.target->value);
   if (word.empty()) return "; target " + bound;
   return fmt::format("; {}{}{} (target {})", word.starts_with("MISS") ? "**" : "", word,
                      word.starts_with("MISS") ? "**" : "", bound);
@@ -118,8 +118,14 @@ std::string interval_text(const std::optional<ConfidenceInterval>& interval) {
   return interval ? return_text(interval->half_width) : "not estimable";
 }
 
+std::string exact_text(double value) {
+  std::string text = fmt::format("{:g}", value);
+  if (text.front() == '-') text.replace(0, 1, "−");
+  return text;
+}
+
 std::string paper_text(const PaperFigure& paper) {
-  return return_text(paper.mean) + (paper.deviation ? " (sd " + return_text(*paper.deviation) + ")" : "");
+  return exact_text(paper.mean) + (paper.deviation ? " (sd " + exact_text(*paper.deviation) + ")" : "");
 }
 
 std::string verdict_word(TargetVerdict v) {
@@ -187,7 +193,8 @@ std::string markdown(const ResultTable& table) {
                       table.wall_seconds);
   if (!table.command.empty()) text += fenced(table.command) + "\n";
   using Json = nlohmann::ordered_json;
-  return text + fenced(table.configuration.dump(2, ' ', false, Json::error_handler_t::replace));
+  return text + "<details><summary>Configuration</summary>\n\n" +
+         fenced(table.configuration.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n</details>\n";
 }
 
 }  // namespace maximin::deep

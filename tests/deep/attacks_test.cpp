@@ -509,7 +509,7 @@ TEST(NamedAttack, TheWorstOfThreeDirectorsIsOneOfThem) {
     setting.file = file.empty() ? std::filesystem::path() : folder / file;
     setting.seed = seed;
     const auto attack = make_attack(setting, target);
-    return evaluate_agent(*agent(), *attack, ObservationBall(0.5), 32, trial_seed).returns;
+    return evaluate_agent(*agent(), *attack, ObservationBall(0.5), 16, trial_seed).returns;
   };
   const auto worst = left("directors", "d.attacker", 3);
   std::vector<std::vector<double>> each;

@@ -222,7 +222,7 @@ TEST(ResultFile, TablesOfSeveralMachinesBecomeOne) {
 TEST(Markdown, SaysAllThatTheTableHolds) {
   const std::string text = markdown(sample::table());
   for (const char* words : {"# Gridworld", "## The paper's attacks", "| agent | no attack | PGD, ε = 0.1 |", "not run",
-                            "(one seed)", "paper 163 (sd 26.0)", "**MISS", "met (target ≥ 150)", "cannot be estimated",
+                            "(one seed)", "paper 163 (sd 26)", "**MISS", "met (target ≥ 150)", "cannot be estimated",
                             "not estimable", "truth in belief 1", "maximin_deep table", "\"frames\": 1000000"}) {
     EXPECT_NE(text.find(words), text.npos) << words;
   }
