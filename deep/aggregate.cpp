@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ double parameter_of(const std::string& text, std::size_t colon) {
   double value = 0;
   const char* end = text.data() + text.size();
   const auto [stopped, error] = std::from_chars(text.data() + colon + 1, end, value);
-  if (error != std::errc() || stopped != end) {
+  if (error != std::errc() || stopped != end || !std::isfinite(value)) {
     throw InputError(fmt::format("aggregator: {}, expected a number after the colon, e.g. cvar:0.25", text));
   }
   return value;

@@ -163,7 +163,7 @@ AgentSpec recipe(std::string_view kind, double eps, std::uint64_t seed, const Ef
   AgentSpec s = found->make(seed);
   s.kind = kind;
   // The same vanilla agent, whatever it will be attacked with.
-  if (s.knows_eps()) s.eps = eps;
+  if (s.knows_eps()) s.eps = eps + 0.0;  // -0 is 0
   if (effort.quick) {
     shorten(s.training, static_cast<long>(static_cast<double>(s.training.frames) * quick_share(s)));
     s.particle_filter_training.updates = 200;

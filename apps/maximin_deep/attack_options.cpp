@@ -49,7 +49,7 @@ Match prepare_match(const AttackedAgent& o) {
   Match match;
   match.trained = std::make_unique<deep::TrainedAgent>(deep::read_agent(o.file));
   deep::AgentSpec& spec = match.trained->spec;
-  match.eps = o.eps >= 0 ? o.eps : spec.eps;
+  match.eps = o.eps >= 0 ? o.eps + 0.0 : spec.eps;  // -0 is 0
   // A vanilla agent has no radius of its own: its belief, if it is given one, is of the attack's.
   if (!spec.knows_eps()) spec.eps = match.eps;
   match.acting = deep::acting_of(spec, o.change);

@@ -55,6 +55,13 @@ std::string acts_by(const deep::Acting& acting) {
   return text;
 }
 
+/// An agent that believes in a smaller ball than the attack's believes what is not so.
+void note_if_unprepared(const Match& match) {
+  const deep::AgentSpec& spec = match.trained->spec;
+  if (!spec.knows_eps() || match.eps <= spec.eps) return;
+  note(fmt::format("{} was trained for eps {:g}; the attack's is {:g}", spec.name(), spec.eps, match.eps));
+}
+
 /// An attacker's file is of one attack on one agent.
 void expect_one_attacker(const EvaluateCommand& command) {
   if (command.options.attacker.empty()) return;
@@ -91,6 +98,7 @@ int evaluate(const EvaluateCommand& command) {
       options.progress = [&](const std::string& at) { line->stage(fmt::format("{}: {}", what, at)); };
       line->stage(what);
       const Match match = prepare_match(options);
+      if (&attack == &command.attacks.front()) note_if_unprepared(match);
       const deep::AgentEvaluation e = deep::evaluate_agent(*match.agent, *match.attack, ObservationBall(match.eps),
                                                            command.episodes, command.seed, match.acting.world);
       const std::vector<deep::SeedRun> run{{match.trained->spec.training.seed, command.seed, e.returns, e.seconds}};

@@ -20,7 +20,8 @@ int run_maximin_deep(int argc, char** argv) {
       "  maximin_deep train bp-dqn --eps 0.5             some minutes; --quick: two\n"
       "  maximin_deep table gridworld --quick            every agent under every attack, in small\n"
       "maximin_deep COMMAND --help tells the options of a command.\n"
-      "Exit codes: 0 done, 2 bad usage or input, 74 the output cannot be written, 130 interrupted (the same command\n"
+      "Exit codes: 0 done, 2 bad usage or input, 74 standard output cannot be written, 130 interrupted (the same "
+      "command\n"
       "goes on).");
   Task task;
   add_train(app, task);

@@ -79,7 +79,8 @@ class TableMaker {
     train_all();
     evaluate_all(file);
     if (!stop_) write_pages(file.table());
-    if (stop_) note("interrupted; the same command goes on where it stopped");
+    if (stop_)
+      note("interrupted; the same command goes on where it stopped (a belief model's training from its beginning)");
     return stop_ ? ExitCode::interrupted : ExitCode::success;
   }
 
@@ -313,8 +314,10 @@ class TableMaker {
   void write_pages(deep::ResultTable table) {
     add_strongest(table);
     const fs::path base = command_.output / command_.kind;
+    // Both or neither: what they are drawn from may be damaged.
+    const std::string page = deep::results_page(table, curves(), traces());
     write_file(base.string() + ".md", deep::markdown(table), Overwrite::replace);
-    write_file(base.string() + ".html", deep::results_page(table, curves(), traces()), Overwrite::replace);
+    write_file(base.string() + ".html", page, Overwrite::replace);
     print(overview(table).text());
     print(fmt::format("All of it: {0}.html to look at, {0}.md to read, {0}.json for programs.\n", base.string()));
   }

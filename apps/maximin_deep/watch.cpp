@@ -50,6 +50,11 @@ int watch(const WatchCommand& command) {
   }
   // Before the work: an episode may take minutes where an attack has to learn first.
   for (const std::filesystem::path& file : {command.output, command.trace}) {
+    const std::filesystem::path folder = file.parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder)) {
+      throw InputError(
+          fmt::format("{}: no such folder, expected one for {}", folder.string(), file.filename().string()));
+    }
     if (command.force || file.empty() || !std::filesystem::exists(file)) continue;
     throw InputError(file.string() + ": exists, expected a new file name, or --force to replace it");
   }

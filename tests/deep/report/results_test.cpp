@@ -133,6 +133,8 @@ TEST(Results, NumbersThatAreNoneAreRefused) {
       EXPECT_THROW(results_page(one_cell(wrong)), InputError);
     }
   }
+  // Its mean would be no number.
+  EXPECT_THROW(validate(one_cell(cell(seeds({1, 1e308})))), InputError);
 }
 
 TEST(ResultFile, GoesOnWhereItStopped) {
