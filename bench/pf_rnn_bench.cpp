@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
     const auto start = std::chrono::steady_clock::now();
     double loss = 0, error = 0, shown_error = 0;
     const long every = std::max(training.updates / 10, 1L);
-    train_pf_rnn(*module, training, [&](const PfTrainingProgress& now) {
+    train_pf_rnn(module, training, [&](const PfTrainingProgress& now) {
       loss += now.loss;
       error += now.mean_error;
       shown_error += now.shown_error;

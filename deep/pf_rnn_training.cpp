@@ -2,26 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
+#include <numeric>
+#include <sstream>
+#include <utility>
 #include <vector>
 
 #include <ATen/CPUGeneratorImpl.h>
+#include <fmt/format.h>
 
 #include <maximin/deep/range_check.hpp>
 #include <maximin/deep/tensors.hpp>
 #include <maximin/theory/error.hpp>
 
 namespace maximin::deep {
-namespace {
-
 /// The trajectories in step.
-class Lanes {
+class PfTrainer::Lanes {
  public:
   explicit Lanes(const PfTrainingOptions& options, double eps) : options_(options) {
-    lanes_.assign(static_cast<std::size_t>(options.batch),
-                  Wandering(options.walk, options.deception, eps, options.actions_drawn, options.horizon));
-    for (Wandering& lane : lanes_) begin(lane);
+    const auto n = static_cast<std::size_t>(options.batch);
+    lanes_.assign(n, Wandering(options.walk, options.deception, eps, options.actions_drawn, options.horizon));
+    stands_.resize(n);
+    for (std::size_t lane = 0; lane < n; ++lane) begin(lane, next_++);
   }
 
   std::vector<PfSight> sights() const {
@@ -40,33 +41,66 @@ class Lanes {
   torch::Tensor step() {
     torch::Tensor goes_on = torch::ones({options_.batch, 1, 1});
     float* flag = goes_on.data_ptr<float>();
-    for (Wandering& lane : lanes_) {
-      if (!lane.step()) {
-        begin(lane);
-        *flag = 0;
-      }
-      ++flag;
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+      ++stands_[lane].steps;
+      if (lanes_[lane].step()) continue;
+      begin(lane, next_++);
+      flag[lane] = 0;
     }
     return goes_on;
   }
 
+  /// Which trajectory each lane is on and how far, [n, 2]: they are functions of that and the seed.
+  torch::Tensor stands() const {
+    torch::Tensor out = torch::empty({options_.batch, 2}, torch::kInt64);
+    auto row = out.accessor<std::int64_t, 2>();
+    for (std::size_t lane = 0; lane < stands_.size(); ++lane) {
+      row[static_cast<long>(lane)][0] = stands_[lane].trajectory;
+      row[static_cast<long>(lane)][1] = stands_[lane].steps;
+    }
+    return out;
+  }
+  /// Goes there, after `updates` windows. Throws InputError when no training stands so.
+  void stand(const torch::Tensor& where, long updates) {
+    const auto row = where.accessor<std::int64_t, 2>();
+    const long most = options_.batch * (1 + updates * options_.window);
+    next_ = 0;
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+      const Stand stand{row[static_cast<long>(lane)][0], row[static_cast<long>(lane)][1]};
+      if (stand.trajectory < 0 || stand.trajectory >= most || stand.steps < 0 || stand.steps >= options_.horizon)
+        throw InputError("trajectories beyond the training's, expected its own");
+      begin(lane, stand.trajectory);
+      for (; stands_[lane].steps < stand.steps; ++stands_[lane].steps) {
+        if (!lanes_[lane].step()) throw InputError("a trajectory beyond its end, expected where it stood before");
+      }
+      next_ = std::max(next_, stand.trajectory + 1);
+    }
+  }
+
  private:
+  struct Stand {
+    long trajectory = 0, steps = 0;
+  };
+
   template <class Place>
   torch::Tensor rows(Place&& place) const {
     std::vector<Point> points;
     for (const Wandering& lane : lanes_) points.push_back(place(lane));
     return to_tensor(points);
   }
-  void begin(Wandering& lane) {
-    lane.begin(options_.seed,
-               options_.trajectories > 0 ? next_ % static_cast<std::uint64_t>(options_.trajectories) : next_);
-    ++next_;
+  void begin(std::size_t lane, long trajectory) {
+    const long drawn = options_.trajectories > 0 ? trajectory % options_.trajectories : trajectory;
+    lanes_[lane].begin(options_.seed, static_cast<std::uint64_t>(drawn));
+    stands_[lane] = {trajectory, 0};
   }
 
   PfTrainingOptions options_;
   std::vector<Wandering> lanes_;
-  std::uint64_t next_ = 0;
+  std::vector<Stand> stands_;
+  long next_ = 0;
 };
+
+namespace {
 
 torch::Tensor dropout_mask(torch::IntArrayRef sizes, double dropout, at::Generator& generator) {
   if (dropout <= 0) return {};
@@ -101,30 +135,13 @@ double mean_distance(const torch::Tensor& a, const torch::Tensor& b) {
   return (a - b).norm(2, 1).mean().item<double>();
 }
 
-/// The mean loss over one window; the state and the lanes go on.
-torch::Tensor window_loss(PfRnn& module, Lanes& lanes, PfState& state, const PfTrainingOptions& options,
-                          at::Generator& generator, PfTrainingProgress& progress) {
-  torch::Tensor sum = torch::zeros({});
-  double weights = 0;
-  const auto steps = static_cast<double>(options.window);
-  for (long t = 0; t < options.window; ++t) {
-    const torch::Tensor shown = lanes.shown(), truth = lanes.truth(options.target);
-    const PfStep step = module.step(state, module.encode(lanes.sights()), shown,
-                                    draw_noise(state, module.options(), options.dropout, generator));
-    const double weight = std::exp(options.time_weight * static_cast<double>(t));
-    sum = sum + pf_loss(step, truth, module.options().eps, options).mean() * weight;
-    weights += weight;
-    progress.mean_error += mean_distance(step.mean.detach(), truth) / steps;
-    progress.shown_error += mean_distance(shown, truth) / steps;
-    state = step.state;
-    restart(state, lanes.step());
-  }
-  detach(state);
-  return sum / weights;
-}
-
 void set_learning_rate(torch::optim::RMSprop& optimizer, double rate) {
   for (auto& group : optimizer.param_groups()) group.options().set_lr(rate);
+}
+
+const PfTrainingOptions& checked(const PfTrainingOptions& options, const PfRnn& module) {
+  options.check(module.options());
+  return options;
 }
 
 double rate_at(long update, const PfTrainingOptions& options) {
@@ -183,33 +200,102 @@ torch::Tensor pf_loss(const PfStep& step, const torch::Tensor& truth, double eps
   return mean_loss * options.mean_weight + (log_k - torch::logsumexp(-errors, 1)) * options.elbo_weight;
 }
 
-void train_pf_rnn(PfRnn& module, const PfTrainingOptions& options,
+PfTrainer::PfTrainer(PfRnnPtr module, const PfTrainingOptions& options)
+    : module_(std::move(module)),
+      options_(checked(options, *module_)),
+      lanes_(std::make_unique<Lanes>(options, module_->options().eps)),
+      state_(module_->initial(options.batch, options.particles)),
+      generator_(at::make_generator<at::CPUGeneratorImpl>(options.seed)),
+      optimiser_(module_->parameters(), torch::optim::RMSpropOptions(options.learning_rate)) {
+  module_->train();
+}
+
+PfTrainer::~PfTrainer() = default;
+
+/// The mean loss over one window; the state and the lanes go on.
+torch::Tensor PfTrainer::window_loss(PfTrainingProgress& progress) {
+  torch::Tensor sum = torch::zeros({});
+  double weights = 0;
+  const auto steps = static_cast<double>(options_.window);
+  for (long t = 0; t < options_.window; ++t) {
+    const torch::Tensor shown = lanes_->shown(), truth = lanes_->truth(options_.target);
+    const PfStep step = module_->step(state_, module_->encode(lanes_->sights()), shown,
+                                      draw_noise(state_, module_->options(), options_.dropout, generator_));
+    const double weight = std::exp(options_.time_weight * static_cast<double>(t));
+    sum = sum + pf_loss(step, truth, module_->options().eps, options_).mean() * weight;
+    weights += weight;
+    progress.mean_error += mean_distance(step.mean.detach(), truth) / steps;
+    progress.shown_error += mean_distance(shown, truth) / steps;
+    state_ = step.state;
+    restart(state_, lanes_->step());
+  }
+  detach(state_);
+  return sum / weights;
+}
+
+PfTrainingProgress PfTrainer::update() {
+  set_learning_rate(optimiser_, rate_at(updates_, options_));
+  PfTrainingProgress now;
+  now.update = updates_ + 1;
+  const torch::Tensor loss = window_loss(now);
+  now.loss = loss.item<double>();
+  if (!std::isfinite(now.loss)) {
+    throw InputError(
+        fmt::format("PF-RNN training: the loss is {} at update {}, expected a number, as with a smaller "
+                    "learning_rate",
+                    now.loss, now.update));
+  }
+  optimiser_.zero_grad();
+  loss.backward();
+  torch::nn::utils::clip_grad_norm_(module_->parameters(), options_.clip);
+  optimiser_.step();
+  ++updates_;
+  return now;
+}
+
+void PfTrainer::save(TensorFile& file) const {
+  file.tensors["updates"] = torch::tensor({updates_}, torch::kInt64);
+  file.tensors["trajectories"] = lanes_->stands();
+  file.tensors["h"] = state_.h;
+  if (state_.c.defined()) file.tensors["c"] = state_.c;
+  file.tensors["log_weights"] = state_.log_weights;
+  put_module(file, "module", *module_);
+  file.tensors["random"] = generator_.get_state();
+  // LibTorch alone knows what its optimiser holds.
+  std::ostringstream optimiser;
+  torch::save(optimiser_, optimiser);
+  file.tensors["optimiser"] = tensor_of_bytes(optimiser.str());
+}
+
+void PfTrainer::load(const TensorFile& file) {
+  torch::Tensor updates = torch::zeros({1}, torch::kInt64), stands = lanes_->stands();
+  file.copy_to("updates", updates);
+  file.copy_to("trajectories", stands);
+  const long done = updates[0].item<long>();
+  if (done < 0 || done > options_.updates) throw InputError("updates beyond the training's, expected its own");
+  lanes_->stand(stands, done);
+  file.copy_to("h", state_.h);
+  if (state_.c.defined()) file.copy_to("c", state_.c);
+  file.copy_to("log_weights", state_.log_weights);
+  get_module(file, "module", *module_);
+  std::istringstream optimiser(bytes_of_tensor(file.at("optimiser")));
+  try {
+    generator_.set_state(file.at("random"));
+    torch::load(optimiser_, optimiser);
+  } catch (const std::exception&) {
+    throw InputError("optimiser or random numbers of another version of LibTorch, expected the one that wrote them");
+  }
+  updates_ = done;
+}
+
+void train_pf_rnn(const PfRnnPtr& module, const PfTrainingOptions& options,
                   const std::function<bool(const PfTrainingProgress&)>& progress) {
-  options.check(module.options());
-  module.train();
-  at::Generator generator = at::make_generator<at::CPUGeneratorImpl>(options.seed);
-  torch::optim::RMSprop optimizer(module.parameters(), torch::optim::RMSpropOptions(options.learning_rate));
-  Lanes lanes(options, module.options().eps);
-  PfState state = module.initial(options.batch, options.particles);
-  for (long update = 1; update <= options.updates; ++update) {
-    set_learning_rate(optimizer, rate_at(update - 1, options));
-    PfTrainingProgress now;
-    now.update = update;
-    const torch::Tensor loss = window_loss(module, lanes, state, options, generator, now);
-    now.loss = loss.item<double>();
-    if (!std::isfinite(now.loss)) {
-      throw InputError(
-          fmt::format("PF-RNN training: the loss is {} at update {}, expected a number, as with a smaller "
-                      "learning_rate",
-                      now.loss, update));
-    }
-    optimizer.zero_grad();
-    loss.backward();
-    torch::nn::utils::clip_grad_norm_(module.parameters(), options.clip);
-    optimizer.step();
+  PfTrainer trainer(module, options);
+  while (!trainer.done()) {
+    const PfTrainingProgress now = trainer.update();
     if (progress && !progress(now)) break;
   }
-  module.eval();
+  module->eval();
 }
 
 }  // namespace maximin::deep

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 
 #include <maximin/deep/pf_rnn.hpp>
+#include <maximin/deep/tensor_file.hpp>
 #include <maximin/deep/wandering.hpp>
 
 namespace maximin::deep {
@@ -59,10 +61,43 @@ struct PfTrainingProgress {
   double shown_error = 0;  ///< and from what is shown
 };
 
-/// Trains the module, whose device must be the CPU, and leaves it in evaluation mode. The same options are the same
-/// module. `progress` is called after every update; training ends early when it returns false. Throws InputError when
-/// an option is out of range or the loss is no longer finite.
-void train_pf_rnn(PfRnn& module, const PfTrainingOptions& options,
+/// Trains a PF-RNN, whose device must be the CPU, one update after another. The same options are the same module, and a
+/// training that is saved, killed and resumed is, bit for bit, one that was not (with the same LibTorch on the same
+/// kind of processor).
+class PfTrainer {
+ public:
+  /// Puts the module into training mode. Throws InputError when an option is out of range.
+  PfTrainer(PfRnnPtr module, const PfTrainingOptions& options);
+  ~PfTrainer();
+
+  long updates() const { return updates_; }
+  bool done() const { return updates_ >= options_.updates; }
+  /// Throws InputError when the loss is no number any more.
+  PfTrainingProgress update();
+
+  /// The module, its optimiser, hidden states, random numbers and where each trajectory stands, which partly share
+  /// their numbers with the trainer: write them before it goes on. And back, into a trainer of the same options; `load`
+  /// throws InputError when the file is of another training.
+  void save(TensorFile& file) const;
+  void load(const TensorFile& file);
+
+ private:
+  class Lanes;
+
+  torch::Tensor window_loss(PfTrainingProgress& progress);
+
+  PfRnnPtr module_;
+  PfTrainingOptions options_;
+  std::unique_ptr<Lanes> lanes_;
+  PfState state_;
+  at::Generator generator_;
+  torch::optim::RMSprop optimiser_;
+  long updates_ = 0;
+};
+
+/// Trains the module as a PfTrainer does, and leaves it in evaluation mode. `progress` is called after every update;
+/// training ends early when it returns false.
+void train_pf_rnn(const PfRnnPtr& module, const PfTrainingOptions& options,
                   const std::function<bool(const PfTrainingProgress&)>& progress = {});
 
 /// The loss of one step per lane, [n], given the true states [n, 2]: what train_pf_rnn makes small.

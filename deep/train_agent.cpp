@@ -39,28 +39,6 @@ std::optional<TrainedAgent> finished(const AgentSpec& spec, const fs::path& path
                   path.string()));
 }
 
-/// A particle filter for the belief, trained in one go: it takes minutes, and the same seed gives the same filter. What
-/// follows keeps it in its checkpoints. False where the hook stopped it.
-bool train_particle_filter(TrainedAgent& agent, const TrainingHooks& hooks) {
-  const PfTrainingOptions options = training_of_filter(agent.spec);
-  const Stopwatch watch;
-  agent.particle_filter = untrained_filter(agent.spec);
-  const long frames_per_update = options.batch * options.window;
-  if (hooks.begin) hooks.begin("belief model of " + agent.spec.name(), options.updates * frames_per_update);
-  bool stopped = false;
-  train_pf_rnn(*agent.particle_filter, options, [&](const PfTrainingProgress& progress) {
-    if (progress.update % 20 != 0 || !hooks.stretch) return true;
-    CurvePoint point;
-    point.frames = progress.update * frames_per_update;
-    point.mean_return = point.exploration = std::nan("");
-    point.loss = progress.loss;
-    stopped = !hooks.stretch(point);
-    return !stopped;
-  });
-  agent.belief_seconds = watch.seconds();
-  return !stopped;
-}
-
 struct Files {
   fs::path agent, log, checkpoint;
   Files(const fs::path& folder, const std::string& name)
@@ -74,11 +52,18 @@ void reading(const fs::path& path, const std::function<void()>& read) {
   } catch (const InputError& e) {
     throw InputError(fmt::format("{}: {}", path.string(), e.what()));
   } catch (const nlohmann::json::exception&) {
-    throw InputError(fmt::format("{}: no checkpoint, expected specification and seconds", path.string()));
+    throw InputError(fmt::format(
+        "{}: no checkpoint of this version, expected specification, part and seconds; remove it to begin anew",
+        path.string()));
   }
 }
 
-/// The checkpoint, if there is one, with what it holds besides the trainer's: seconds so far and the particle filter.
+/// What of a pipeline a checkpoint is of.
+constexpr const char* filter_part = "particle filter";
+constexpr const char* network_part = "network";
+
+/// The checkpoint, if there is one, with what it holds besides the trainer's: seconds so far and, when that is trained,
+/// the particle filter.
 std::optional<TensorFile> read_checkpoint(const fs::path& path, TrainedAgent& agent) {
   if (!fs::exists(path)) return std::nullopt;
   TensorFile file = read_tensor_file(path, "training");
@@ -88,35 +73,96 @@ std::optional<TensorFile> read_checkpoint(const fs::path& path, TrainedAgent& ag
     if (!same_training(written, agent.spec)) {
       throw InputError("a training of another specification, expected the same; remove it or train in another folder");
     }
-    get_particle_filter(file, agent);
+    if (file.about.at("part") == network_part) get_particle_filter(file, agent);
     agent.belief_seconds = file.about.at("belief_seconds").get<double>();
     agent.training_seconds = file.about.at("training_seconds").get<double>();
   });
   return file;
 }
 
-void write_checkpoint(const fs::path& path, const TrainedAgent& agent, const Trainer& trainer, double seconds) {
+/// `about` tells the agent's specification and seconds.
+void write_checkpoint(const fs::path& path, const TrainedAgent& about, const char* part,
+                      const std::function<void(TensorFile&)>& save) {
   TensorFile file{"training", {}, {}};
-  file.about["specification"] = to_json(agent.spec);
-  file.about["belief_seconds"] = agent.belief_seconds;
-  file.about["training_seconds"] = seconds;
-  put_particle_filter(file, agent);
-  trainer.save(file);
+  file.about["specification"] = to_json(about.spec);
+  file.about["part"] = part;
+  file.about["belief_seconds"] = about.belief_seconds;
+  file.about["training_seconds"] = about.training_seconds;
+  save(file);
   write_tensor_file(path, file);
+}
+
+constexpr long updates_told = 20, updates_kept = 200;
+
+/// The particle filter of the agent's belief. What follows keeps it in its own checkpoints. False where the hook
+/// stopped it.
+bool train_particle_filter(TrainedAgent& agent, const fs::path& path, const TensorFile* checkpoint,
+                           const TrainingHooks& hooks) {
+  const PfTrainingOptions options = training_of_filter(agent.spec);
+  agent.particle_filter = untrained_filter(agent.spec);
+  PfTrainer trainer(agent.particle_filter, options);
+  if (checkpoint) reading(path, [&] { trainer.load(*checkpoint); });
+  const double before = agent.belief_seconds;
+  const Stopwatch watch;
+  const auto keep = [&] {
+    agent.belief_seconds = before + watch.seconds();
+    write_checkpoint(path, agent, filter_part, [&](TensorFile& file) { trainer.save(file); });
+  };
+  const long frames_per_update = options.batch * options.window;
+  if (hooks.begin) hooks.begin("belief model of " + agent.spec.name(), options.updates * frames_per_update);
+  while (!trainer.done()) {
+    const PfTrainingProgress now = trainer.update();
+    if (now.update % updates_kept == 0) keep();
+    if (now.update % updates_told != 0 || !hooks.stretch) continue;
+    CurvePoint point;
+    point.frames = now.update * frames_per_update;
+    point.mean_return = point.exploration = std::nan("");
+    point.loss = now.loss;
+    if (!hooks.stretch(point)) {
+      keep();
+      return false;
+    }
+  }
+  keep();
+  agent.particle_filter->eval();
+  return true;
+}
+
+/// The agent's own network. False where the hook stopped it.
+bool train_network(TrainedAgent& agent, const Files& files, const TensorFile* checkpoint, torch::Device device,
+                   const TrainingHooks& hooks) {
+  Trainer trainer(agent.spec.training, training_parts(agent, device));
+  if (checkpoint) reading(files.checkpoint, [&] { trainer.load(*checkpoint); });
+  const double before = agent.training_seconds;
+  const Stopwatch watch;
+  TrainingLogWriter log(files.log, training_columns(), static_cast<double>(trainer.frames()));
+  if (hooks.begin) hooks.begin(agent.spec.name(), agent.spec.training.frames);
+  while (!trainer.done()) {
+    const CurvePoint point = trainer.stretch();
+    log.append(training_row(point));
+    agent.training_seconds = before + watch.seconds();
+    const bool go_on = !hooks.stretch || hooks.stretch(point);
+    if (trainer.done()) break;
+    write_checkpoint(files.checkpoint, agent, network_part, [&](TensorFile& file) {
+      put_particle_filter(file, agent);
+      trainer.save(file);
+    });
+    if (!go_on) return false;
+  }
+  return true;
 }
 
 /// What is trained before the agent: the weights that it begins with, and its particle filter unless it has one.
 bool prepare(TrainedAgent& agent, const fs::path& folder, torch::Device device, const Effort& effort,
              const TrainingHooks& hooks) {
   const AgentSpec& spec = agent.spec;
-  if (const auto first = beginning_of(spec, effort)) {
-    const auto start = train_agent(*first, folder, device, effort, hooks);
-    if (!start) return false;
-    agent.q->copy_from(*start->q);
-    if (auto* wocar = dynamic_cast<WocarLoss*>(agent.loss.get())) wocar->start_from(*start->q);
-  }
-  const bool lacks_filter = spec.has_particle_filter() && !agent.particle_filter;
-  return !lacks_filter || train_particle_filter(agent, hooks);
+  const auto first = beginning_of(spec, effort);
+  if (!first) return true;
+  const auto start = train_agent(*first, folder, device, effort, hooks);
+  if (!start) return false;
+  agent.q->copy_from(*start->q);
+  if (auto* wocar = dynamic_cast<WocarLoss*>(agent.loss.get())) wocar->start_from(*start->q);
+  return true;
 }
 
 }  // namespace
@@ -164,22 +210,13 @@ std::optional<TrainedAgent> train_agent(const AgentSpec& spec, const fs::path& f
   const FileLock one_at_a_time(files.agent);
   TrainedAgent agent = untrained(spec);
   const auto checkpoint = read_checkpoint(files.checkpoint, agent);
+  const auto of_part = [&](const char* part) { return checkpoint && checkpoint->about["part"] == part; };
   if (!prepare(agent, folder, device, effort, hooks)) return std::nullopt;
-
-  Trainer trainer(spec.training, training_parts(agent, device));
-  if (checkpoint) reading(files.checkpoint, [&] { trainer.load(*checkpoint); });
-  const double before = agent.training_seconds;
-  const Stopwatch watch;
-  TrainingLogWriter log(files.log, training_columns(), static_cast<double>(trainer.frames()));
-  if (hooks.begin) hooks.begin(spec.name(), spec.training.frames);
-  while (!trainer.done()) {
-    const CurvePoint point = trainer.stretch();
-    log.append(training_row(point));
-    const bool go_on = !hooks.stretch || hooks.stretch(point);
-    if (!trainer.done()) write_checkpoint(files.checkpoint, agent, trainer, before + watch.seconds());
-    if (!go_on && !trainer.done()) return std::nullopt;
+  if (spec.has_particle_filter() && !of_part(network_part) &&
+      !train_particle_filter(agent, files.checkpoint, of_part(filter_part) ? &*checkpoint : nullptr, hooks)) {
+    return std::nullopt;
   }
-  agent.training_seconds = before + watch.seconds();
+  if (!train_network(agent, files, of_part(network_part) ? &*checkpoint : nullptr, device, hooks)) return std::nullopt;
   agent.q->to(torch::kCPU);
   for (const auto& module : agent.loss->modules()) module->to(torch::kCPU);
   write_agent(files.agent, agent);

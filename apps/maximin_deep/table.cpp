@@ -79,8 +79,7 @@ class TableMaker {
     train_all();
     evaluate_all(file);
     if (!stop_) write_pages(file.table());
-    if (stop_)
-      note("interrupted; the same command goes on where it stopped (a belief model's training from its beginning)");
+    if (stop_) note("interrupted; the same command goes on where it stopped");
     return stop_ ? ExitCode::interrupted : ExitCode::success;
   }
 

@@ -106,7 +106,7 @@ int train(const TrainCommand& command) {
   }
   print(command.json ? json_text(Json{{"agents", all}}) : table.text());
   if (complete) return ExitCode::success;
-  note("interrupted; the same command goes on where it stopped (a belief model's training from its beginning)");
+  note("interrupted; the same command goes on where it stopped");
   return ExitCode::interrupted;
 }
 

@@ -16,6 +16,12 @@ COMMANDS = ["train", "evaluate", "table", "watch"]
 ENVIRONMENT = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 TINY = json.dumps({"network": {"hidden": [8]}, "training": {"frames": 3000, "lanes": 8, "stretch_frames": 80, "warm_up": 100}})
+# With a particle filter, which is trained first and for longest.
+TINY_FILTER = json.dumps({
+    "start_from": "", "network": {"hidden": [8]}, "training_belief_states": 2,
+    "particle_filter": {"particles": 3, "hidden": 8, "embedding": 8},
+    "particle_filter_training": {"updates": 900, "batch": 2, "window": 2, "particles": 3},
+    "training": {"frames": 400, "lanes": 8, "stretch_frames": 80, "warm_up": 100}})
 
 
 def refused(arguments, says, **files):
@@ -83,10 +89,10 @@ def wait_for(path, process, seconds=60):
     return os.path.exists(path)
 
 
-def tiny(folder, name="tiny.json"):
+def tiny(folder, name="tiny.json", config=TINY):
     path = os.path.join(folder, name)
     with open(path, "w") as f:
-        f.write(TINY)
+        f.write(config)
     return path
 
 
@@ -121,30 +127,39 @@ def killed_at_random(program, folder, arguments, checkpoint, rng):
     return "" if result.returncode == 0 else "exit code %d, %r" % (result.returncode, result.stderr)
 
 
-def check_killed_training(program):
+def killed_training(program, agent, name, config):
     """A training killed in the middle three times leaves the same files, byte for byte."""
     problems = []
     with tempfile.TemporaryDirectory() as folder:
-        def arguments(name, *more):
-            return ["train", "dqn", "--config", tiny(folder), "--folder", os.path.join(folder, name), "--json", *more]
+        def arguments(where, *more):
+            return ["train", agent, "--config", tiny(folder, config=config), "--folder", os.path.join(folder, where), "--json",
+                    *more]
         whole = deep(program, arguments("whole"))
         if whole.returncode != 0 or json.loads(whole.stdout)["agents"][0]["training_seconds"] <= 0:
             problems.append("exit code %d, %r" % (whole.returncode, whole.stderr))
-        checkpoint = os.path.join(folder, "cut", "dqn-seed1.training")
+        checkpoint = os.path.join(folder, "cut", name + "1.training")
         problem = killed_at_random(program, folder, arguments("cut"), checkpoint, random.Random(4))
         if problem:
             problems.append(problem)
         deep(program, arguments("other", "--seed", "2"))
         for ending in (".agent", ".csv"):
-            one, other = (bytes_of(os.path.join(folder, f, "dqn-seed1" + ending)) for f in ("whole", "cut"))
+            one, other = (bytes_of(os.path.join(folder, f, name + "1" + ending)) for f in ("whole", "cut"))
             if one != other:
-                problems.append("another dqn-seed1%s after being killed" % ending)
-            if one == bytes_of(os.path.join(folder, "other", "dqn-seed2" + ending)):
+                problems.append("another %s1%s after being killed" % (name, ending))
+            if one == bytes_of(os.path.join(folder, "other", name + "2" + ending)):
                 problems.append("the comparison does not tell seeds apart")
         left = [f for f in os.listdir(os.path.join(folder, "cut")) if not f.endswith(".partial")]
-        if sorted(left) != ["dqn-seed1.agent", "dqn-seed1.csv", "dqn-seed1.times.json"]:
+        if sorted(left) != [name + "1" + ending for ending in (".agent", ".csv", ".times.json")]:
             problems.append("left behind: %s" % left)
     return problems
+
+
+def check_killed_training(program):
+    return killed_training(program, "dqn", "dqn-seed", TINY)
+
+
+def check_killed_filter_training(program):
+    return killed_training(program, "bp-dqn-printed", "bp-dqn-printed-eps0.1-seed", TINY_FILTER)
 
 
 def check_interrupted_training(program):
@@ -350,8 +365,8 @@ def check_killed_table(program):
     return problems
 
 
-CHECKS = [check_help, check_killed_training, check_interrupted_training, check_agents, check_one_training_at_a_time, check_table_in_parts,
-          check_killed_table]
+CHECKS = [check_help, check_killed_training, check_killed_filter_training, check_interrupted_training, check_agents,
+          check_one_training_at_a_time, check_table_in_parts, check_killed_table]
 
 
 if __name__ == "__main__":

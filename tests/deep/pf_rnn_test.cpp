@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -407,7 +409,7 @@ TEST(PfRnn, LearnsMoreThanWhatIsShown) {
     const PfRnnPtr module = make(shape);
     PfRnnBelief belief(module);
     const PredictionErrors before = evaluate_predictions(belief, trial);
-    train_pf_rnn(*module, training);
+    train_pf_rnn(module, training);
     const PredictionErrors after = evaluate_predictions(belief, trial);
     RecordProperty(cell == PfCell::lstm ? "lstm" : "gru", std::to_string(after.belief));
     EXPECT_LT(after.belief, 0.8 * after.shown);
@@ -426,7 +428,7 @@ TEST(PfRnn, TrainingIsReproducibleAndRefusesNonsense) {
   training.dropout = 0.2;
   const auto trained = [&] {
     const PfRnnPtr module = make(tiny(PfCell::lstm));
-    train_pf_rnn(*module, training);
+    train_pf_rnn(module, training);
     return torch::cat({module->named_parameters()["read.weight"].flatten(),
                        module->named_parameters()["from_hidden.weight"].flatten()});
   };
@@ -446,7 +448,7 @@ TEST(PfRnn, TrainingIsReproducibleAndRefusesNonsense) {
   as_published.batch = 5;
   as_published.window = 3;
   long calls = 0;
-  train_pf_rnn(*module, as_published, [&](const PfTrainingProgress&) { return ++calls < 1; });
+  train_pf_rnn(module, as_published, [&](const PfTrainingProgress&) { return ++calls < 1; });
   EXPECT_EQ(calls, 1);
   // One particle, on the mean: both parts of the loss are the squared distance, each once, whatever the radius.
   const torch::Tensor truth = torch::tensor({{1.0, 2.0}}), place = torch::tensor({{1.3, 2.4}});
@@ -455,9 +457,90 @@ TEST(PfRnn, TrainingIsReproducibleAndRefusesNonsense) {
   step.places = place.unsqueeze(1);
   EXPECT_NEAR(pf_loss(step, truth, 0.1, as_published).item<double>(), 2 * 0.25, 1e-5);
   as_published.particles = 3;
-  EXPECT_THROW(train_pf_rnn(*module, as_published), InputError);
+  EXPECT_THROW(train_pf_rnn(module, as_published), InputError);
   published.eps = 0;
   EXPECT_THROW(make(published), InputError);
+}
+
+/// A training of seven updates: all of it, or cut after some and continued from what was saved by another trainer.
+TensorFile trained_filter(const PfRnnOptions& shape, const PfTrainingOptions& training, std::optional<long> cut = {},
+                          const std::function<void(TensorFile&)>& tamper = {}) {
+  PfTrainer first(make(shape), training);
+  while (first.updates() < cut.value_or(training.updates)) first.update();
+  TensorFile saved{"any", {}, {}};
+  first.save(saved);
+  if (!cut) return saved;
+  for (auto& [name, tensor] : saved.tensors) tensor = tensor.detach().clone();
+  if (tamper) tamper(saved);
+  PfTrainer second(make(shape), training);
+  second.load(saved);
+  EXPECT_EQ(second.updates(), *cut);
+  while (!second.done()) second.update();
+  TensorFile end{"any", {}, {}};
+  second.save(end);
+  return end;
+}
+
+PfTrainingOptions seven_updates() {
+  PfTrainingOptions training;
+  training.updates = 7;
+  training.batch = 5;
+  training.window = 3;
+  training.horizon = 8;  // so that trajectories end
+  training.dropout = 0.2;
+  return training;
+}
+
+/// All but the optimiser's bytes, which name its parameters by their addresses.
+bool same_tensors(TensorFile a, TensorFile b) {
+  a.tensors.erase("optimiser");
+  b.tensors.erase("optimiser");
+  return std::equal(
+      a.tensors.begin(), a.tensors.end(), b.tensors.begin(), b.tensors.end(),
+      [](const auto& x, const auto& y) { return x.first == y.first && torch::equal(x.second, y.second); });
+}
+
+TEST(PfTrainer, GoesOnBitForBitFromWhatItSaved) {
+  PfRnnOptions published = PfRnnOptions::published(0.1);
+  published.particles = 4;
+  for (const PfRnnOptions& shape : {tiny(PfCell::lstm), tiny(PfCell::gru), published}) {
+    PfTrainingOptions training = seven_updates();
+    if (shape.normalisation == PfNormalisation::batch) training.particles = 0;
+    const TensorFile whole = trained_filter(shape, training);
+    for (const long cut : {0, 1, 4, 7}) EXPECT_TRUE(same_tensors(whole, trained_filter(shape, training, cut))) << cut;
+    // Nothing of what is saved is saved in vain.
+    const auto differs = [&](const std::function<void(TensorFile&)>& tamper) {
+      return !same_tensors(whole, trained_filter(shape, training, 4, tamper));
+    };
+    EXPECT_TRUE(differs([](TensorFile& file) { file.tensors["h"].add_(0.1); }));
+    EXPECT_TRUE(differs([](TensorFile& file) { file.tensors["log_weights"][0][0].sub_(1); }));
+    EXPECT_TRUE(differs([](TensorFile& file) { file.tensors["module.read.weight"].add_(0.1); }));
+    EXPECT_TRUE(differs([&](TensorFile& file) {
+      const TensorFile fresh = trained_filter(shape, training, 0);
+      file.tensors["random"] = fresh.at("random");
+    }));
+    EXPECT_TRUE(differs([&](TensorFile& file) {
+      TensorFile fresh{"any", {}, {}};
+      PfTrainer(make(shape), training).save(fresh);
+      file.tensors["optimiser"] = fresh.at("optimiser");
+    }));
+    EXPECT_TRUE(differs([](TensorFile& file) { file.tensors["trajectories"][0][1].zero_(); }));
+  }
+}
+
+TEST(PfTrainer, RefusesWhatAnotherTrainingSaved) {
+  const auto refused = [](const std::function<void(TensorFile&)>& tamper) {
+    EXPECT_THROW(trained_filter(tiny(PfCell::lstm), seven_updates(), 4, tamper), InputError);
+  };
+  refused([](TensorFile& file) { file.tensors["updates"].fill_(8); });
+  refused([](TensorFile& file) { file.tensors["updates"].fill_(-1); });
+  refused([](TensorFile& file) { file.tensors["trajectories"][2][0].fill_(-1); });
+  refused([](TensorFile& file) { file.tensors["trajectories"][2][0].fill_(1'000'000); });
+  refused([](TensorFile& file) { file.tensors["trajectories"][2][1].fill_(8); });
+  refused([](TensorFile& file) { file.tensors.erase("h"); });
+  refused([](TensorFile& file) { file.tensors["h"] = torch::zeros({1, 2, 3}); });
+  refused([](TensorFile& file) { file.tensors["random"] = torch::zeros({7}, torch::kUInt8); });
+  refused([](TensorFile& file) { file.tensors["optimiser"] = torch::zeros({7}, torch::kUInt8); });
 }
 
 TEST(PfRnn, KeepsAllItsNumbersInAFile) {
