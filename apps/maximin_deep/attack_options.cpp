@@ -1,5 +1,7 @@
 #include <maximin/apps/maximin_deep/attack_options.hpp>
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <maximin/apps/common/option_checks.hpp>
@@ -7,6 +9,22 @@
 #include <maximin/theory/error.hpp>
 
 namespace maximin::apps {
+
+namespace {
+
+CLI::Validator aggregator_name() {
+  const auto wrong = [](const std::string& text) -> std::string {
+    try {
+      deep::aggregator_named(text);
+      return {};
+    } catch (const InputError& e) {
+      return e.what();
+    }
+  };
+  return CLI::Validator(wrong, "");
+}
+
+}  // namespace
 
 void add_attack_options(CLI::App& sub, AttackedAgent& o) {
   sub.add_option("--eps", o.eps, "Radius of the attack's ball; what the agent was trained for unless given")
@@ -18,12 +36,30 @@ void add_attack_options(CLI::App& sub, AttackedAgent& o) {
   sub.add_option("--belief", o.change.belief,
                  "In place of the agent's own: observed, ball, exact, pf-lstm, pf-gru; X-mean: the mean of X")
       ->check(one_of(deep::belief_names()));
-  sub.add_option("--aggregator", o.change.aggregator, "In place of its own: min, mean, soft-min:BETA, cvar:ALPHA");
+  sub.add_option("--aggregator", o.change.aggregator, "In place of its own: min, mean, soft-min:BETA, cvar:ALPHA")
+      ->check(aggregator_name());
   sub.add_option("--random-actions", o.change.random_actions, "Share of random actions, in place of its own")
       ->check(real_number({.low = 0, .high = 1}));
-  sub.add_option("--attack-seed", o.attack_seed, "Seed of a learned attack's training")->check(seed_number());
+  sub.add_option("--attack-seed", o.attack_seed, "Seed of a learned attack's training; 1 unless given")
+      ->check(seed_number());
   sub.add_option("--attacker", o.attacker, "File of a learned attack: read where it exists, else written");
   sub.add_flag("--quick", o.quick, "Learned attacks learn for seconds");
+}
+
+void expect_options_used(const AttackedAgent& o, const std::vector<std::string>& attacks) {
+  const auto any = [&](auto&& is) {
+    return std::any_of(attacks.begin(), attacks.end(),
+                       [&](const std::string& name) { return is(deep::attack_named(name)); });
+  };
+  const bool learned = any([](const deep::NamedAttack& a) { return a.learned; });
+  if (!learned && (o.attack_seed || !o.attacker.empty())) {
+    throw InputError(fmt::format("{}: no attack here learns, expected one that does, e.g. --attack director",
+                                 o.attack_seed ? "--attack-seed" : "--attacker"));
+  }
+  if (!o.judge.empty() && !any([](const deep::NamedAttack& a) { return a.knows == deep::Knowledge::defence; })) {
+    throw InputError(
+        "--judge: no attack here goes by it, expected one on the whole defence, e.g. --attack best-response");
+  }
 }
 
 void note_if_quick(const AttackedAgent& o) {
@@ -69,7 +105,7 @@ Match prepare_match(const AttackedAgent& o) {
   deep::AttackSetting setting;
   setting.name = o.attack;
   setting.eps = match.eps;
-  setting.seed = o.attack_seed;
+  setting.seed = o.attack_seed.value_or(1);
   setting.quick = o.quick;
   setting.file = o.attacker;
   setting.progress = [&](double share, double) {

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <maximin/deep/attacks/named_attack.hpp>
 #include <maximin/deep/trained_agent.hpp>
@@ -19,9 +21,9 @@ struct AttackedAgent {
   double eps = -1;  ///< of the attack; negative: what the agent was trained for
   std::filesystem::path
       judge;  ///< whose values adaptive attacks go by; empty: a vanilla agent beside the file, or its own
-  deep::ActingChange change;  ///< how it acts otherwise than it was trained to
-  std::uint64_t attack_seed = 1;
-  std::filesystem::path attacker;  ///< where a learned attack is kept
+  deep::ActingChange change;                 ///< how it acts otherwise than it was trained to
+  std::optional<std::uint64_t> attack_seed;  ///< 1 unless given
+  std::filesystem::path attacker;            ///< where a learned attack is kept
   bool quick = false;
   /// Is told what the work is at, e.g. for how much of its training a learned attack has learned.
   std::function<void(const std::string&)> progress;
@@ -29,6 +31,9 @@ struct AttackedAgent {
 
 /// Tells that numbers of learned attacks are quick ones, where they are.
 void note_if_quick(const AttackedAgent& options);
+
+/// Throws InputError where an option is given that none of these attacks looks at.
+void expect_options_used(const AttackedAgent& options, const std::vector<std::string>& attacks);
 
 /// Declares them, all but the file and the attack.
 void add_attack_options(CLI::App& sub, AttackedAgent& options);

@@ -73,6 +73,7 @@ void expect_one_attacker(const EvaluateCommand& command) {
 }
 
 int evaluate(const EvaluateCommand& command) {
+  expect_options_used(command.options, command.attacks);
   expect_one_attacker(command);
   note_if_quick(command.options);
   std::optional<StageProgress> line("evaluate");

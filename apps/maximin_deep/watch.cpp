@@ -44,6 +44,7 @@ void expect_files_apart(const WatchCommand& command) {
 }
 
 int watch(const WatchCommand& command) {
+  expect_options_used(command.options, {command.options.attack});
   expect_files_apart(command);
   if (command.output.extension() != ".svg") {
     throw InputError(fmt::format("--output: {}, expected a name that ends in .svg", command.output.string()));
