@@ -12,7 +12,7 @@
 
 #include "input_errors.hpp"
 
-namespace maximin::deep {
+namespace maximin::deep::aggregate_test {  // of its own: built as one unit with its neighbours
 namespace {
 
 using torch::Tensor;
@@ -115,4 +115,4 @@ TEST(Aggregate, ExtremeParametersAndNames) {
 }
 
 }  // namespace
-}  // namespace maximin::deep
+}  // namespace maximin::deep::aggregate_test

@@ -17,7 +17,7 @@
 
 #include "tiny_networks.hpp"
 
-namespace maximin::deep {
+namespace maximin::deep::belief_agent_test {  // of its own: built as one unit with its neighbours
 namespace {
 
 constexpr Lane lanes = 6;
@@ -218,4 +218,4 @@ TEST(BeliefAgent, ActsByTheMixedValuesOfAWorstCaseAwareAgent) {
 }
 
 }  // namespace
-}  // namespace maximin::deep
+}  // namespace maximin::deep::belief_agent_test

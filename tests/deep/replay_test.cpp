@@ -12,7 +12,7 @@
 
 #include "input_errors.hpp"
 
-namespace maximin::deep {
+namespace maximin::deep::replay_test {  // of its own: built as one unit with its neighbours
 namespace {
 
 using torch::Tensor;
@@ -233,4 +233,4 @@ TEST_F(ReplayFile, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace maximin::deep
+}  // namespace maximin::deep::replay_test

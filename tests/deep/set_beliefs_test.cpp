@@ -11,7 +11,7 @@
 
 #include "input_errors.hpp"
 
-namespace maximin::deep {
+namespace maximin::deep::set_beliefs_test {  // of its own: built as one unit with its neighbours
 namespace {
 
 constexpr Lane lanes = 5;
@@ -223,4 +223,4 @@ TEST(MeanState, IsTheMeanOfTheWholeBelief) {
 }
 
 }  // namespace
-}  // namespace maximin::deep
+}  // namespace maximin::deep::set_beliefs_test
