@@ -73,7 +73,12 @@ std::optional<TensorFile> read_checkpoint(const fs::path& path, TrainedAgent& ag
     if (!same_training(written, agent.spec)) {
       throw InputError("a training of another specification, expected the same; remove it or train in another folder");
     }
-    if (file.about.at("part") == network_part) get_particle_filter(file, agent);
+    const auto part = file.about.at("part").get<std::string>();
+    if (part == network_part) {
+      get_particle_filter(file, agent);
+    } else if (part != filter_part || !agent.spec.has_particle_filter()) {
+      throw InputError(fmt::format("its part is \"{}\", expected one of this agent's; remove it to begin anew", part));
+    }
     agent.belief_seconds = file.about.at("belief_seconds").get<double>();
     agent.training_seconds = file.about.at("training_seconds").get<double>();
   });
